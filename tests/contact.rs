@@ -8,10 +8,10 @@ use idc_cell::arm::chain::{BodyInertia, Joint, JointKind, KinematicChain};
 use idc_cell::control::law::{DriveLimit, JointLaw};
 use idc_cell::device::{Device, DeviceParameters, DeviceState, PistonMotion};
 use idc_cell::physics::seal_friction::SealFriction;
-use idc_cell::plant::{ContactLaw, ContactParameters, ForceTerms, Periodic, Relief, StepContact};
+use idc_cell::plant::{CellParameters, PistonLoad, PlantParameters, Relief, RunningDevice, Touch};
+use idc_cell::simulation::contact::ContactReading;
 use idc_cell::simulation::contact::ToolBall;
-use idc_cell::simulation::contact::{ContactReading, Touch};
-use idc_cell::simulation::slide::{self, SlideCarrier};
+use idc_cell::simulation::slide;
 use idc_cell::simulation::world::{World, WorldDescription};
 use idc_cell::workpiece::{TriangleMesh, load_mesh};
 
@@ -56,7 +56,7 @@ struct Press {
     world: World,
     device: Device,
     state: DeviceState,
-    contact: ContactParameters,
+    plant: PlantParameters,
     relief: Relief,
     touches: Vec<Touch>,
     pressed: Vec<(DVec3, f64)>,
@@ -96,17 +96,12 @@ impl Press {
         Self {
             state: device.at_rest(TOUCH, 0.0),
             world,
+            plant: PlantParameters::of_cell(
+                device.parameters().clone(),
+                (law.stiffness, law.damping),
+                CellParameters::RIGID,
+            ),
             device,
-            contact: ContactParameters {
-                law: ContactLaw::Linear {
-                    stiffness: law.stiffness,
-                },
-                damping: law.damping,
-                surface_offset: 0.0,
-                spindle_frequency: 0.0,
-                runout: Periodic::NONE,
-                waviness: Periodic::NONE,
-            },
             relief: Relief::default(),
             touches: Vec::new(),
             pressed: Vec::new(),
@@ -120,29 +115,27 @@ impl Press {
         self.world.touches(&self.relief, &mut self.touches);
     }
 
+    /// Load on the slide at a stroke [m], without an axial force.
+    fn load(&self, stroke: f64) -> PistonLoad<'_> {
+        let mass = self.device.parameters().moving_mass;
+        let mut load = PistonLoad::new(&self.plant.contact, mass, &self.touches, self.time);
+        load.stroke.0[0] = stroke;
+        load
+    }
+
     /// One step as the simulation takes it, the cross slide held at a place [m], the vertical one pushed with a force [N].
     fn step(&mut self, cross: f64, force: f64) {
         let mass = self.device.parameters().moving_mass;
         let (stroke, speed) = (self.world.positions()[1], self.world.velocities()[1]);
-        let carrier = SlideCarrier {
-            beyond: 0.0,
-            terms: ForceTerms::default(),
-            peak: None,
-            contact: StepContact::plain(&self.contact),
-            touches: &self.touches,
-            start: self.time,
-            stroke,
-            weight: mass * self.carried + force,
-            rate: self.contact.rate(mass),
-        };
-        let moved = slide::advance(
-            &self.device,
-            &mut self.state,
-            &carrier,
-            (0.0, speed),
-            (STEP, 1),
-            &mut self.pressed,
-        );
+        let mut load = self.load(stroke);
+        load.axial.0[0] = mass * self.carried + force;
+        let motion = PistonMotion { stroke, speed };
+        let mut device =
+            RunningDevice::new(&self.plant, &self.device, (motion, self.state.clone()));
+        let mut pressed = Vec::new();
+        let moved = slide::advance(&mut device, &load, 0.0, (STEP, 1), &mut pressed);
+        self.state = device.state;
+        self.pressed = pressed;
         let pushed = moved.device + force;
         let laws = [hold_cross_slide(cross), JointLaw::constant(pushed)];
         self.world.set_laws(&laws);
@@ -159,21 +152,9 @@ impl Press {
             stroke: self.world.positions()[1],
             speed: self.world.velocities()[1],
         };
-        let carrier = SlideCarrier {
-            beyond: 0.0,
-            terms: ForceTerms::default(),
-            peak: None,
-            contact: StepContact::plain(&self.contact),
-            touches: &self.touches,
-            start: self.time,
-            stroke: motion.stroke,
-            weight: 0.0,
-            rate: 0.0,
-        };
-        let forces = self.touches.iter();
-        let forces = forces.map(|touch| carrier.normal_force(touch, 0.0, motion));
+        let force = self.load(motion.stroke).contact_force(0.0, motion);
         let deepest = self.touches.iter().map(|touch| touch.penetration);
-        (deepest.fold(f64::NEG_INFINITY, f64::max), forces.sum())
+        (deepest.fold(f64::NEG_INFINITY, f64::max), force)
     }
 
     /// Force that the contact carried, by Rapier.

@@ -5,7 +5,7 @@
 
 use std::f64::consts::PI;
 
-use idc_cell::device::{Carrier, Device, DeviceParameters, PistonMotion};
+use idc_cell::device::{Device, DeviceParameters, Load, PistonMotion};
 use idc_cell::physics::gas::Gas;
 use idc_cell::physics::gas_process::GasProcess;
 use idc_cell::physics::push_only::PushOnly;
@@ -181,7 +181,14 @@ impl Bench {
                     state.valve = ValvePosition::Retract;
                 }
                 let set_pressure = command.map_or(0.0, |command| command.1);
-                device.advance_carried(&mut state, &mut motion, set_pressure, self, STEP, substeps);
+                device.advance_loaded::<_, true>(
+                    &mut state,
+                    &mut motion,
+                    set_pressure,
+                    self,
+                    STEP,
+                    substeps,
+                );
                 model.state(&device, state.air.masses, motion)
             })
             .collect()
@@ -212,9 +219,7 @@ impl Bench {
     }
 }
 
-impl Carrier for Bench {
-    const MOVES: bool = true;
-
+impl Load for Bench {
     fn force(&self, _: f64, motion: PistonMotion, touching: bool) -> f64 {
         let weight = self.parameters.moving_mass * self.gravity;
         if !touching {

@@ -8,7 +8,7 @@ use idc_cell::device::{Device, DeviceState, PistonMotion};
 use idc_cell::physics::push_only::PushOnly;
 use idc_cell::physics::valve::ValvePosition;
 use idc_cell::plant::{ContactLaw, ContactParameters};
-use idc_cell::rig::BenchCarrier;
+use idc_cell::rig::load_at;
 use idc_cell::scenario::bench::{BenchScenario, CommandScenario, LoadScenario};
 use idc_cell::scenario::load_bench;
 
@@ -180,12 +180,12 @@ impl Case {
             .rev()
             .find(|v| v.0 <= time + 1e-9);
         state.valve = valve.map_or(ValvePosition::Extend, |v| v.1);
-        let carrier = BenchCarrier::at(&self.scenario, time);
+        let load = load_at(&self.scenario, time);
         let device = &self.device;
         if audited {
-            device.advance_carried(state, motion, set_pressure, &carrier, STEP, substeps);
+            device.advance_loaded::<_, true>(state, motion, set_pressure, &load, STEP, substeps);
         } else {
-            device.advance_carried_unaudited(state, motion, set_pressure, &carrier, STEP, substeps);
+            device.advance_loaded::<_, false>(state, motion, set_pressure, &load, STEP, substeps);
         }
     }
 

@@ -11,9 +11,9 @@ use idc_cell::arm::kinematics::{jacobian_at, link_poses};
 use idc_cell::cell::Cell;
 use idc_cell::control::law::JointLaw;
 use idc_cell::path::{Phase, Reference};
+use idc_cell::plant::Touch;
 use idc_cell::plant::{ContactParameters, Relief};
 use idc_cell::scenario::load;
-use idc_cell::simulation::contact::Touch;
 use idc_cell::simulation::world::{World, WorldDescription};
 use idc_cell::simulation::{Simulation, StepTimes};
 

@@ -33,9 +33,9 @@ use crate::arm::kinematics::{jacobian_at, link_poses};
 use crate::arm::urdf::Arm;
 use crate::collision::{CollisionModel, Meeting};
 use crate::control::force::ForceController;
-use crate::control::transmission::TransmissionParameters;
 use crate::device::Device;
 use crate::path::{Pass, Plan};
+use crate::physics::joint_spring::JointSpring;
 use crate::physics::push_only::PushOnly;
 use crate::plant::{EdgeStation, PlantParameters, Relief};
 use crate::scenario::{Scenario, ScenarioError, load};
@@ -51,7 +51,7 @@ pub struct Cell {
     /// The same as it is.
     pub bodies: KinematicChain,
     /// Transmission between motor and link of each of its joints, base first; none where they are one.
-    pub transmissions: Vec<Option<TransmissionParameters>>,
+    pub transmissions: Vec<Option<JointSpring>>,
     /// Its physics.
     pub plant: PlantParameters,
     /// How finely a step of the simulation is cut.

@@ -2,8 +2,8 @@
 
 use super::error::CellError;
 use crate::arm::chain::KinematicChain;
-use crate::control::transmission::TransmissionParameters;
 use crate::effects::PresentEffect;
+use crate::physics::joint_spring::JointSpring;
 use crate::plant::{CellParameters, OwnLaw, Periodic, PlantParameters};
 use crate::scenario::Scenario;
 
@@ -84,13 +84,13 @@ pub(super) fn transmissions(
     scenario: &Scenario,
     chain: &KinematicChain,
     cell: &CellParameters,
-) -> Vec<Option<TransmissionParameters>> {
+) -> Vec<Option<JointSpring>> {
     let joints = chain.joints.iter().enumerate();
     let between = joints.map(|(axis, joint)| {
         let stiffness = cell.joint_stiffness[axis];
         let mut drives = scenario.arm.drives.iter();
         let drive = drives.find(|drive| drive.joint == joint.name && drive.stiffness.is_finite());
-        stiffness.is_finite().then(|| TransmissionParameters {
+        stiffness.is_finite().then(|| JointSpring {
             stiffness,
             damping_time: drive.map_or(cell.joint_damping, |drive| drive.damping_time),
             play: cell.joint_play[axis],

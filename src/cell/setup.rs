@@ -12,9 +12,9 @@ use super::supply;
 use crate::arm::chain::{BodyInertia, Joint, JointKind, KinematicChain};
 use crate::arm::urdf::{Arm, ArmOptions, LimitOverride, load_arm};
 use crate::collision::CollisionModel;
-use crate::control::transmission::TransmissionParameters;
 use crate::path::profile::MotionLimits;
 use crate::path::{Outline, Pass, Plan, PlanError, PlanRequest, ToolAxis, ToolPath};
+use crate::physics::joint_spring::JointSpring;
 use crate::plant::PlantParameters;
 use crate::scenario::{ArmScenario, PassScenario, Scenario};
 
@@ -29,7 +29,7 @@ pub struct Setup {
     /// The same as it is.
     pub bodies: KinematicChain,
     /// Transmission between motor and link of each of its joints, base first; none where they are one.
-    pub transmissions: Vec<Option<TransmissionParameters>>,
+    pub transmissions: Vec<Option<JointSpring>>,
     /// Its physics.
     pub plant: PlantParameters,
     /// Part, edge and burr.

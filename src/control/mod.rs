@@ -1,6 +1,5 @@
 //! Controllers: the arm's joint servo and the device's set pressure.
 
-pub mod command_lag;
 pub mod force;
 pub mod law;
 pub mod servo;

@@ -2,32 +2,20 @@
 //!
 //! ```text
 //! B theta'' = tau - T                                      motor, seen from the joint
-//! T = K z + K b (theta' - q'),   z = e - sign(e) p/2 where |e| > p/2, else T = 0,   e = theta - q
 //! ```
 //!
-//! theta motor's angle over the gear, where the encoder sits [rad], q link's angle [rad], tau torque of the drive less its losses [N m], B rotor's inertia
-//! seen from the joint [kg m2], K stiffness [N m/rad], b damping over stiffness [s], p play from flank to flank [rad]. (Spong, J. Dyn. Syst. Meas. Control
-//! 109, 1987; the play as in Nordin, Gutman, Automatica 38, 2002, sec. 2.)
+//! theta motor's angle over the gear, where the encoder sits [rad], tau torque of the drive less its losses [N m], B rotor's inertia seen from the joint
+//! [kg m2], T torque of the joint's spring at theta less the link's angle (`physics::joint_spring`).
 //!
 //! The motor takes a step of the midpoint rule against the link as it moves now; the link then meets the spring with the motor in the middle of the step.
 
 use super::law::{DriveLimit, JointLaw};
-
-/// Spring and play of one joint.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TransmissionParameters {
-    /// Stiffness [N m/rad].
-    pub stiffness: f64,
-    /// Damping over stiffness [s].
-    pub damping_time: f64,
-    /// Play from flank to flank [rad].
-    pub play: f64,
-}
+use crate::physics::joint_spring::JointSpring;
 
 /// A motor behind its transmission.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Motor {
-    parameters: TransmissionParameters,
+    spring: JointSpring,
     /// Inertia of the rotor seen from the joint [kg m2].
     inertia: f64,
     /// Angle over the gear [rad].
@@ -42,16 +30,10 @@ pub struct Motor {
 
 impl Motor {
     /// At rest where its servo holds it, carrying a torque [N m]; gives the link's angle too.
-    pub fn at_rest(
-        parameters: TransmissionParameters,
-        inertia: f64,
-        angle: f64,
-        torque: f64,
-    ) -> (Self, f64) {
-        let side = if torque == 0.0 { 0.0 } else { torque.signum() };
-        let link = angle - torque / parameters.stiffness - 0.5 * side * parameters.play;
+    pub fn at_rest(spring: JointSpring, inertia: f64, angle: f64, torque: f64) -> (Self, f64) {
+        let link = angle - spring.under(torque);
         let motor = Self {
-            parameters,
+            spring,
             inertia,
             angle,
             speed: 0.0,
@@ -84,20 +66,8 @@ impl Motor {
 
     /// Advances under a law of the drive, whatever torque it takes.
     fn follow(&mut self, drive: &JointLaw, (link, link_speed): (f64, f64), dt: f64) -> JointLaw {
-        let half = 0.5 * self.parameters.play;
-        let wound = self.angle - link;
-        let side = if half == 0.0 {
-            0.0
-        } else {
-            wound.signum() * half
-        };
-        let engaged = wound.abs() >= half;
-        let stiffness = if engaged {
-            self.parameters.stiffness
-        } else {
-            0.0
-        };
-        let damping = self.parameters.damping_time * stiffness;
+        let (stiffness, side) = self.spring.at(self.angle - link);
+        let damping = self.spring.damping_time * stiffness;
         let ahead = link + 0.5 * dt * link_speed;
         let torque = drive.force
             - drive.stiffness * (self.angle - drive.rest)
@@ -124,7 +94,7 @@ impl Motor {
 mod tests {
     use super::*;
 
-    const SPRING: TransmissionParameters = TransmissionParameters {
+    const SPRING: JointSpring = JointSpring {
         stiffness: 1e5,
         damping_time: 2e-3,
         play: 4e-3,
@@ -141,7 +111,7 @@ mod tests {
     };
 
     /// A link of 5 kg m2 under a torque, its motor held by a stiff servo.
-    fn settled(parameters: TransmissionParameters, torque: f64) -> f64 {
+    fn settled(parameters: JointSpring, torque: f64) -> f64 {
         let (mut motor, mut link) = Motor::at_rest(parameters, 2.0, 0.3, 0.0);
         let servo = JointLaw {
             force: 0.0,
@@ -166,7 +136,7 @@ mod tests {
             let expected = torque / 1e5 + 2e-3 * torque.signum();
             assert!((settled(SPRING, torque) - expected).abs() < 1e-6);
         }
-        let tight = TransmissionParameters {
+        let tight = JointSpring {
             play: 0.0,
             ..SPRING
         };

@@ -7,7 +7,7 @@
 //!
 //! Chosen by measurement over adaptive stiff solvers: benches/solver, docs/SPEED.md.
 
-use super::carrier::{Carrier, PistonMotion};
+use super::load::{Load, PistonMotion};
 use super::pneumatics::Device;
 use super::state::{AirState, DeviceState, Disturbance, EnergyLedger};
 use crate::physics::orifice::LAMINAR_RATIO;
@@ -36,7 +36,7 @@ pub(super) struct Flow {
     pub(super) air: AirState,
     ledger: EnergyLedger,
     pub(super) motion: PistonMotion,
-    /// Impulse since the start of the step: of the gas on the piston, and of the piston on its load [N s].
+    /// Impulse since the start of the step: of the gas on the piston, and of the piston on its contact [N s].
     pub(super) impulses: Impulses,
 }
 
@@ -45,7 +45,7 @@ pub(super) struct Flow {
 pub(super) struct Impulses {
     /// Of the gas on the piston, along extension.
     pub gas: f64,
-    /// Of the piston on its load, along extension.
+    /// Of the piston on its contact, along extension; kept with the ledger.
     pub load: f64,
 }
 
@@ -83,9 +83,9 @@ pub(super) struct Mode {
 }
 
 /// A sub-step's surroundings.
-pub(super) struct Surroundings<'a, C> {
+pub(super) struct Surroundings<'a, L> {
     pub(super) device: &'a Device,
-    carrier: &'a C,
+    load: &'a L,
     pub(super) valve: ValvePosition,
     pub(super) trajectory: OutletTrajectory,
     /// Start of the trajectory in the step [s].
@@ -97,12 +97,12 @@ pub(super) struct Surroundings<'a, C> {
 
 impl Device {
     /// Returns the impulses of the step.
-    pub(super) fn integrate<C: Carrier, const LEDGER: bool>(
+    pub(super) fn integrate<L: Load, const LEDGER: bool>(
         &self,
         state: &mut DeviceState,
         motion: &mut PistonMotion,
         set_pressure: f64,
-        carrier: &C,
+        load: &L,
         dt: f64,
         substeps: usize,
     ) -> Impulses {
@@ -112,7 +112,7 @@ impl Device {
         let delay = self.parameters.switching_delay;
         state.spool.command(state.valve, delay);
         let longest = (dt / substeps as f64)
-            .min(self.longest_substep(carrier, state, *motion, dt))
+            .min(self.longest_substep(load, state, *motion, dt))
             .max(dt / MOST_SUBSTEPS);
         let mut flow = Flow {
             air: state.air,
@@ -131,7 +131,7 @@ impl Device {
             let h = trajectory.duration / count.max(1.0);
             let mut surroundings = Surroundings {
                 device: self,
-                carrier,
+                load,
                 valve: state.spool.position(state.valve),
                 trajectory,
                 trajectory_start: time,
@@ -156,36 +156,36 @@ impl Device {
         }
         state.air = flow.air;
         state.ledger = flow.ledger;
-        if C::MOVES {
+        if L::MOVES {
             *motion = flow.motion;
             state.seal_stroke = flow.motion.stroke;
         }
         flow.impulses
     }
 
-    fn longest_substep<C: Carrier>(
+    fn longest_substep<L: Load>(
         &self,
-        carrier: &C,
+        load: &L,
         state: &DeviceState,
         motion: PistonMotion,
         dt: f64,
     ) -> f64 {
         let volumes = self.smallest_volumes(motion, dt);
         let air = (AIR_LIMIT / self.air_rate(volumes, &state.disturbance)).min(self.line_substep);
-        if !C::MOVES {
+        if !L::MOVES {
             return air;
         }
         // What the valve may let in during the step.
         let outlet = self.parameters.gas.atmosphere + state.regulator.outlet;
         let spring = self.spring_rate(&state.air, volumes, outlet);
-        let fastest = spring.max(self.piston_rates.within(carrier, motion, dt));
-        let swing = carrier.swing();
+        let fastest = spring.max(self.piston_rates.within(load, motion, dt));
+        let swing = load.swing();
         let mechanical = swing / fastest;
         let allowed = air.min(dt);
         if mechanical >= allowed {
             return allowed;
         }
-        let outside = carrier.force(0.0, motion, carrier.touches(0.0, motion));
+        let outside = load.force(0.0, motion, load.touches(0.0, motion));
         let force = self.piston_force(state, motion) + outside;
         let acceleration = force / self.parameters.moving_mass;
         let speed = motion.speed.abs() + acceleration.abs() * dt;
@@ -216,7 +216,7 @@ fn next_look([a, b]: [[f64; 2]; 2], widest: f64, whole: f64) -> f64 {
     }
 }
 
-impl<C: Carrier> Surroundings<'_, C> {
+impl<L: Load> Surroundings<'_, L> {
     /// Advances over the first sub-step of a trajectory. Where the outlet leaves the chamber's pressure, the flow begins with the root of time, which a step
     /// of whatever order meets with an error of its length to the power 1.5 alone: that sub-step is halved towards its start.
     fn begin<const LEDGER: bool>(&mut self, flow: &mut Flow, start: f64, h: f64) {
@@ -241,10 +241,7 @@ impl<C: Carrier> Surroundings<'_, C> {
         if travel < 2.0 * proportional || parameters.hose.is_some() {
             return 0;
         }
-        let supplied = match self.valve {
-            ValvePosition::Extend => 0,
-            ValvePosition::Retract => 1,
-        };
+        let supplied = self.valve.supplied();
         let volumes = [0, 1].map(|i| self.device.chambers[i].volume(flow.motion.stroke));
         let away = (outlet - self.device.pressures_of(&flow.air, volumes)[supplied]).abs();
         let halvings = (travel / away.max(proportional)).log2() as i32;
@@ -255,7 +252,7 @@ impl<C: Carrier> Surroundings<'_, C> {
     fn advance<const LEDGER: bool>(&mut self, flow: &mut Flow, start: f64, h: f64) {
         let (mut from, mut left) = (start, h);
         for _ in 0..MOST_EVENTS {
-            if !C::MOVES {
+            if !L::MOVES {
                 break;
             }
             let mode = self.mode(from, flow.motion);
@@ -299,11 +296,9 @@ impl<C: Carrier> Surroundings<'_, C> {
     }
 
     fn accept(&mut self, flow: &mut Flow, next: Flow, [start, length]: [f64; 2]) {
-        if C::LOADED {
-            self.carrier.note(start, length, [flow.motion, next.motion]);
-        }
+        self.load.note(start, length, [flow.motion, next.motion]);
         let device = self.device;
-        if C::MOVES && device.parameters.seal_friction.is_dry() {
+        if L::MOVES && device.parameters.seal_friction.is_dry() {
             let ends = [&*flow, &next].map(|flow| (&flow.air, flow.motion.stroke));
             let seals = device.seals_over(ends, self.disturbance.friction);
             let moved = next.motion.stroke - flow.motion.stroke;
@@ -314,7 +309,7 @@ impl<C: Carrier> Surroundings<'_, C> {
     }
 
     fn mode(&self, time: f64, motion: PistonMotion) -> Mode {
-        if !C::MOVES {
+        if !L::MOVES {
             return Mode {
                 touching: false,
                 stop: 0,
@@ -324,7 +319,7 @@ impl<C: Carrier> Surroundings<'_, C> {
         }
         let dry = self.device.parameters.seal_friction.is_dry();
         Mode {
-            touching: self.carrier.touches(time, motion),
+            touching: self.load.touches(time, motion),
             stop: self.device.stop_at(motion),
             cushion: self.device.cushion_at(motion),
             direction: if dry { motion.speed.signum() as i8 } else { 0 },
@@ -390,7 +385,7 @@ impl<C: Carrier> Surroundings<'_, C> {
                 load: 0.0,
             },
         };
-        if C::MOVES {
+        if L::MOVES {
             let seals = parameters
                 .seal_friction
                 .under(air.pressures[0] - air.pressures[1])
@@ -401,18 +396,16 @@ impl<C: Carrier> Surroundings<'_, C> {
             let stop = device.stop_force_of(mode.stop, motion);
             let cushion = device.cushion_force_of(mode.cushion, motion);
             let axial = device.axial_force(motion.stroke);
-            let carrier = self.carrier.force(time, motion, mode.touching);
-            let force = gas_force - seal + stop + cushion + axial + carrier;
+            let load = self.load.force(time, motion, mode.touching);
+            let force = gas_force - seal + stop + cushion + axial + load;
             rates.motion.speed = force / parameters.moving_mass;
-            if C::LOADED {
-                rates.impulses.load = self.carrier.load(time, motion, mode.touching);
-            }
             if LEDGER {
                 rates.ledger.seal_work = seal * motion.speed;
                 rates.ledger.stop_work = -stop * motion.speed;
                 rates.ledger.cushion_work = -cushion * motion.speed;
                 rates.ledger.axial_work = axial * motion.speed;
-                rates.ledger.carrier_work = carrier * motion.speed;
+                rates.ledger.load_work = load * motion.speed;
+                rates.impulses.load = self.load.contact(time, motion, mode.touching);
             }
         }
         if LEDGER {

@@ -4,8 +4,8 @@
 //! mass solves one equation, monotonic in the pressure; a reservoir that no longer holds the regulator's pressure drives the line, and is solved with it. Its implicit half is stable however fast the line is, damps what is faster than the
 //! sub-step, and ends on its last stage, so that a fast line comes out where inflow and outflow balance.
 
-use super::carrier::{Carrier, PistonMotion};
 use super::integrate::{Flow, Mode, Surroundings};
+use super::load::{Load, PistonMotion};
 use super::pneumatics::Device;
 use super::state::AirState;
 use crate::physics::flow_slope::FlowSlope;
@@ -72,7 +72,7 @@ const IMPLICIT: [[f64; 5]; 6] = [
     ],
 ];
 
-impl<C: Carrier> Surroundings<'_, C> {
+impl<L: Load> Surroundings<'_, L> {
     /// One step of the pair.
     pub(super) fn line_step<const LEDGER: bool>(
         &self,
@@ -171,10 +171,7 @@ impl Device {
         (held, share): (Feed, f64),
     ) -> Feed {
         let gas = &self.parameters.gas;
-        let fed = match valve {
-            ValvePosition::Extend => 0,
-            ValvePosition::Retract => 1,
-        };
+        let fed = valve.supplied();
         let volumes = [0, 1].map(|i| self.chambers[i].volume(motion.stroke));
         let after = self.pressures_of(air, volumes)[fed];
         let backward = (gas.temperature / self.temperature_of(air, fed)).sqrt();

@@ -1,6 +1,6 @@
 //! Forces on the piston besides that of the gas: cushions, axial load, seals under pressure; and all of it together.
 
-use super::carrier::PistonMotion;
+use super::load::PistonMotion;
 use super::pneumatics::Device;
 use super::state::{AirState, DeviceState};
 use crate::physics::seal_friction::SealFriction;

@@ -1,12 +1,13 @@
 //! The device's equations put together: flows between its parts and the force on its piston, at a state.
 
-use super::carrier::{PistonMotion, Predicted};
 use super::leaks::LeakFlows;
+use super::load::{PistonMotion, Predicted};
 use super::rates::{PistonRates, longest_line_step};
 use super::state::{AirState, DeviceState, Disturbance, EnergyLedger};
-use super::{Carrier, DeviceParameters};
+use super::{DeviceParameters, Load};
 use crate::physics::chamber::Chamber;
 use crate::physics::gas_process::GasProcess;
+use crate::physics::hose::Hose;
 use crate::physics::line_chain::UPSTREAM;
 use crate::physics::orifice::FlowFunction;
 use crate::physics::piston::PistonAreas;
@@ -212,7 +213,7 @@ impl Device {
         ledger.axial_work += axial * travel;
         ledger.seal_work += seal * travel;
         // Who holds the piston at its speed takes all that the device does to it.
-        ledger.carrier_work -= impulse * motion.speed + besides_gas * travel;
+        ledger.load_work -= impulse * motion.speed + besides_gas * travel;
         DeviceForce {
             force: impulse / dt + besides_gas,
             damping: stop_damping + cushion_damping + seals.viscous,
@@ -221,33 +222,20 @@ impl Device {
         }
     }
 
-    /// Advances device and piston together by `dt` [s]: the piston, of the device's moving mass, moves under the device's force and its carrier's.
-    /// `substeps` is the least number; stiff parts get more, and contacts, stops and reversals are met where they happen. Keeps the energy ledger.
-    /// Returns the piston's impulse on its load along extension [N s], of a carrier that tells it.
-    pub fn advance_carried<C: Carrier>(
+    /// Advances device and piston together by `dt` [s]: the piston, of the device's moving mass, moves under the device's force and its load's.
+    /// `substeps` is the least number; stiff parts get more, and contacts, stops and reversals are met where they happen. Without the energy ledger it is a
+    /// fifth faster; with it, returns the piston's impulse on its contact along extension [N s].
+    pub fn advance_loaded<L: Load, const LEDGER: bool>(
         &self,
         state: &mut DeviceState,
         motion: &mut PistonMotion,
         set_pressure: f64,
-        carrier: &C,
+        load: &L,
         dt: f64,
         substeps: usize,
     ) -> f64 {
-        self.integrate::<C, true>(state, motion, set_pressure, carrier, dt, substeps)
+        self.integrate::<L, LEDGER>(state, motion, set_pressure, load, dt, substeps)
             .load
-    }
-
-    /// As [`Device::advance_carried`] without the ledger, a fifth faster.
-    pub fn advance_carried_unaudited<C: Carrier>(
-        &self,
-        state: &mut DeviceState,
-        motion: &mut PistonMotion,
-        set_pressure: f64,
-        carrier: &C,
-        dt: f64,
-        substeps: usize,
-    ) {
-        self.integrate::<C, false>(state, motion, set_pressure, carrier, dt, substeps);
     }
 
     /// Bends the bristles by the motion since they were last looked at.
@@ -330,14 +318,11 @@ impl Device {
         let [first, second] = &self.chambers;
         let volumes = [first.volume(motion.stroke), second.volume(motion.stroke)];
         let pressures = self.pressures_of(air, volumes);
-        let (supplied, vented) = match valve {
-            ValvePosition::Extend => (0, 1),
-            ValvePosition::Retract => (1, 0),
-        };
-        let reservoir = self.parameters.supply_reservoir.as_ref();
+        let (supplied, vented) = (valve.supplied(), 1 - valve.supplied());
+        let reservoir = parameters.supply_reservoir.as_ref();
         let stored = reservoir.map_or(f64::INFINITY, |r| r.pressure(gas, air.reservoir_mass));
         let outlet = outlet.min(stored);
-        let before = match &self.parameters.hose {
+        let before = match &parameters.hose {
             None => outlet,
             Some(hose) => gas.pressure(air.hose_mass, hose.last_volume()),
         };
@@ -347,15 +332,10 @@ impl Device {
         flows[supplied] = (self.flow).mass_flow(supply, before, pressures[supplied]);
         flows[vented] = (self.flow).mass_flow(exhaust, self.behind(valve), pressures[vented]);
         let disturbance_flows = disturbance.mass_flows;
-        let leaks = if parameters.leakage.is_none() && disturbance.leaks == [0.0; 2] {
-            LeakFlows::default()
-        } else {
-            let chambers = [0, 1].map(|i| (pressures[i], self.temperature_of(air, i)));
-            LeakFlows::new(&self.parameters, &self.flow, chambers, disturbance.leaks)
-        };
+        let leaks = self.leak_flows(air, pressures, disturbance.leaks);
         let mut rates = AirState::default();
         let mut ledger = EnergyLedger::default();
-        if let GasProcess::WallHeat { conductance } = self.parameters.gas_process {
+        if let GasProcess::WallHeat { conductance } = parameters.gas_process {
             for i in 0..2 {
                 let own = self.temperature_of(air, i);
                 let upstream = if flows[i] > 0.0 { gas.temperature } else { own };
@@ -378,45 +358,23 @@ impl Device {
                 ledger.heat_in += work - rt * flow;
             }
         }
-        rates.masses = [
-            flows[0] + leaks.masses[0] + disturbance_flows[0],
-            flows[1] + leaks.masses[1] + disturbance_flows[1],
-        ];
-        let from_regulator = match &self.parameters.hose {
-            None => flows[supplied],
-            Some(hose) => {
-                let upstream = hose.segments() - 1;
-                let volume = hose.segment_volume();
-                let mut previous = outlet;
-                let mut carried = f64::NAN;
-                let mut inflow = f64::NAN;
-                for j in 0..upstream {
-                    let pressure = gas.pressure(air.upstream[j], volume);
-                    let flow = hose.mass_flow(previous, pressure);
-                    if j == 0 {
-                        inflow = flow;
-                    } else {
-                        rates.upstream[j - 1] = carried - flow;
-                    }
-                    (previous, carried) = (pressure, flow);
-                }
-                let last = hose.mass_flow(previous, before);
-                if upstream == 0 {
-                    inflow = last;
-                } else {
-                    rates.upstream[upstream - 1] = carried - last;
-                }
-                rates.hose_mass = last - flows[supplied];
-                inflow
+        for i in 0..2 {
+            rates.masses[i] = flows[i] + leaks.masses[i] + disturbance_flows[i];
+        }
+        let mut from_regulator = flows[supplied];
+        if let Some(hose) = &parameters.hose {
+            let (into, last) = (self.line_flows(hose, air, outlet), hose.segments() - 1);
+            for j in 0..last {
+                rates.upstream[j] = into[j] - into[j + 1];
             }
-        };
+            rates.hose_mass = into[last] - from_regulator;
+            from_regulator = into[0];
+        }
         if let Some(reservoir) = reservoir {
             rates.reservoir_mass = reservoir.compressed(stored) - from_regulator.max(0.0);
         }
-        let [first, second] = disturbance_flows;
-        let [leak_1, leak_2] = leaks.external;
-        let all = [from_regulator, flows[vented], leak_1, leak_2, first, second];
-        for flow in all {
+        let through_valve = [from_regulator, flows[vented]];
+        for flow in [through_valve, leaks.external, disturbance_flows].as_flattened() {
             rates.entered += flow.max(0.0);
             rates.left -= flow.min(0.0);
         }
@@ -425,6 +383,32 @@ impl Device {
             ledger,
             pressures,
         }
+    }
+
+    /// Flows of the leaks, of those besides the parameters' from areas [m2].
+    #[inline(always)]
+    fn leak_flows(&self, air: &AirState, pressures: [f64; 2], further: [f64; 2]) -> LeakFlows {
+        if self.parameters.leakage.is_none() && further == [0.0; 2] {
+            return LeakFlows::default();
+        }
+        let chambers = [0, 1].map(|i| (pressures[i], self.temperature_of(air, i)));
+        LeakFlows::new(&self.parameters, &self.flow, chambers, further)
+    }
+
+    /// Flow into each segment of a line from an outlet pressure [Pa absolute] on [kg/s].
+    #[inline(always)]
+    fn line_flows(&self, hose: &Hose, air: &AirState, outlet: f64) -> [f64; UPSTREAM + 1] {
+        let gas = &self.parameters.gas;
+        let (mut into, mut previous, last) = ([0.0; UPSTREAM + 1], outlet, hose.segments() - 1);
+        for j in 0..=last {
+            let pressure = match j == last {
+                true => gas.pressure(air.hose_mass, hose.last_volume()),
+                false => gas.pressure(air.upstream[j], hose.segment_volume()),
+            };
+            into[j] = hose.mass_flow(previous, pressure);
+            previous = pressure;
+        }
+        into
     }
 
     /// Absolute pressure behind the exhaust orifice [Pa]: of a second regulator behind chamber 2, if there is one.

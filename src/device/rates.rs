@@ -1,7 +1,7 @@
 //! Rates of the piston's swing on what it meets within a step, and of a line, for the choice of sub-steps.
 
 use super::DeviceParameters;
-use super::carrier::{Carrier, PistonMotion};
+use super::load::{Load, PistonMotion};
 
 /// Longest sub-step that a line is taken in however fast it is [s], for accuracy alone: tests/equations/lines.rs.
 const LONGEST: f64 = 2.5e-4;
@@ -48,10 +48,10 @@ impl PistonRates {
 
     /// The fastest rate that the piston can meet over a step [1/s]: stops, cushions and load count if they are within its reach, for they
     /// are far stiffer than the air.
-    pub(super) fn within<C: Carrier>(&self, carrier: &C, motion: PistonMotion, dt: f64) -> f64 {
+    pub(super) fn within<L: Load>(&self, load: &L, motion: PistonMotion, dt: f64) -> f64 {
         let reach = MARGIN + dt * (2.0 * motion.speed.abs() + dt * self.swiftness);
         let to_end = motion.stroke.min(self.full_stroke - motion.stroke);
-        let mut fastest = self.everywhere.max(carrier.rate_within(motion, reach, dt));
+        let mut fastest = self.everywhere.max(load.rate_within(motion, reach, dt));
         if to_end < reach {
             fastest = fastest.max(self.stop);
         }

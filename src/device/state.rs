@@ -5,7 +5,7 @@ use crate::physics::regulator::RegulatorState;
 use crate::physics::switching_delay::Spool;
 use crate::physics::valve::ValvePosition;
 
-/// State of a device; the piston's motion belongs to whoever carries it.
+/// State of a device; its piston's motion is kept beside it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DeviceState {
     /// The regulator.
@@ -94,16 +94,16 @@ impl AirState {
     }
 }
 
-/// Energy that has passed since the start [J]; kept by `Device::advance_carried` and `Device::advance`.
+/// Energy that has passed since the start [J]; kept by `Device::advance_loaded` and `Device::advance`.
 ///
 /// Two balances hold, at any time between any two states:
 ///
 /// ```text
 /// U(air in the chambers) = U_0 + enthalpy_in + heat_in - chamber_work
-/// M v^2/2                = M v_0^2/2 + chamber_work - atmosphere_work - seal_work - stop_work - cushion_work + axial_work + carrier_work
+/// M v^2/2                = M v_0^2/2 + chamber_work - atmosphere_work - seal_work - stop_work - cushion_work + axial_work + load_work
 /// ```
 ///
-/// `Device::advance` moves the piston as predicted, at one speed throughout its step: there the second has no change on its left, and the carrier's
+/// `Device::advance` moves the piston as predicted, at one speed throughout its step: there the second has no change on its left, and the load's
 /// work is what the caller's prediction puts in to hold that speed, the negative of the returned force times the way. What the mass gains from one step to
 /// the next is the caller's own account.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -124,8 +124,8 @@ pub struct EnergyLedger {
     pub cushion_work: f64,
     /// Work of the axial load on the piston.
     pub axial_work: f64,
-    /// Work of whoever carries the piston on it.
-    pub carrier_work: f64,
+    /// Work of the load on the piston.
+    pub load_work: f64,
 }
 
 impl EnergyLedger {
@@ -139,7 +139,7 @@ impl EnergyLedger {
             stop_work: self.stop_work + time * rates.stop_work,
             cushion_work: self.cushion_work + time * rates.cushion_work,
             axial_work: self.axial_work + time * rates.axial_work,
-            carrier_work: self.carrier_work + time * rates.carrier_work,
+            load_work: self.load_work + time * rates.load_work,
         }
     }
 }

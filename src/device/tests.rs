@@ -1,6 +1,6 @@
 //! Optional parts of a device - leaks, loads, cushions, a finite supply, a late valve - against closed forms.
 
-use super::{Carrier, Device, DeviceParameters, PistonMotion};
+use super::{Device, DeviceParameters, Load, PistonMotion};
 use crate::physics::axial_load::AxialLoad;
 use crate::physics::end_cushioning::EndCushioning;
 use crate::physics::gas_process::GasProcess;
@@ -13,9 +13,7 @@ use crate::physics::valve::ValvePosition;
 /// A piston that nothing else acts on.
 struct Alone;
 
-impl Carrier for Alone {
-    const MOVES: bool = true;
-
+impl Load for Alone {
     fn force(&self, _: f64, _: PistonMotion, _: bool) -> f64 {
         0.0
     }
@@ -186,7 +184,7 @@ fn the_axial_load_moves_the_piston_to_where_it_balances_the_gas() {
         speed: 0.0,
     };
     for _ in 0..20_000 {
-        device.advance_carried(&mut state, &mut motion, 5e4, &Alone, 1e-3, 2);
+        device.advance_loaded::<_, true>(&mut state, &mut motion, 5e4, &Alone, 1e-3, 2);
     }
     let balance = (5e4 * device.parameters().areas().extending - 20.0) / 2500.0;
     assert!(
@@ -220,7 +218,7 @@ fn a_coasting_piston_is_slowed_by_its_cushion_as_far_as_the_closed_form_says() {
         };
         let end = if direction > 0.0 { 0.05 } else { 0.0 };
         while (end - motion.stroke) * direction > 0.0 {
-            device.advance_carried(&mut state, &mut motion, 0.0, &Alone, 1e-4, 1);
+            device.advance_loaded::<_, true>(&mut state, &mut motion, 0.0, &Alone, 1e-4, 1);
             if (end - motion.stroke) * direction > 8e-3 {
                 assert!((motion.speed * direction - 1.0).abs() < 1e-6);
             }
@@ -345,7 +343,7 @@ fn a_late_valve_does_what_a_prompt_one_does_that_is_told_later() {
                 true => ValvePosition::Retract,
                 false => ValvePosition::Extend,
             };
-            device.advance_carried(&mut state, &mut motion, 2e5, &Alone, 1e-3, 1);
+            device.advance_loaded::<_, true>(&mut state, &mut motion, 2e5, &Alone, 1e-3, 1);
             motion.stroke
         };
         (0..1500).map(step).collect::<Vec<f64>>()

@@ -1,10 +1,11 @@
-//! Pure equations of the pneumatic device: no engine, no files, no clock. One effect a file.
+//! Pure equations of the pneumatic device, its tool and its arm's drives: no engine, no files, no clock. One effect a file.
 //!
 //! Pressures are absolute [Pa], mass flows positive into the chamber, forces positive in extension.
 
 pub mod axial_load;
 pub mod chamber;
 pub mod chamfer;
+pub mod command_lag;
 pub mod cutting_force;
 pub mod end_cushioning;
 pub mod flow_slope;
@@ -12,6 +13,7 @@ pub mod gas;
 pub mod gas_process;
 pub mod hose;
 pub mod iso_6358;
+pub mod joint_spring;
 pub mod leakage;
 pub mod line_chain;
 pub mod orifice;

@@ -14,6 +14,16 @@ pub enum ValvePosition {
     Retract,
 }
 
+impl ValvePosition {
+    /// Index of the chamber on the regulator; the other one is vented.
+    pub fn supplied(self) -> usize {
+        match self {
+            Self::Extend => 0,
+            Self::Retract => 1,
+        }
+    }
+}
+
 /// Orifices of the valve, discharge coefficient included.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ValveParameters {

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! b ball's centre at no stroke, a slide's axis, e point of the edge, r radius of the ball, l how far the part stands out (a burr is met by the ball alone,
-//! `carrier`), x stroke. Joints that are off turn all behind them about their axes, from the last one to the first: the product of exponentials (Brockett,
+//! `simulate`), x stroke. Joints that are off turn all behind them about their axes, from the last one to the first: the product of exponentials (Brockett,
 //! 1984; Lynch, Park, Modern Robotics, 2017, sec. 4.1), exact whatever their size.
 //!
 //! ```text

@@ -5,17 +5,16 @@
 //! T = -mu F sat(v / v_s),   v = v_motors + J_t . d'
 //! ```
 //!
-//! With play p the spring rests at the flank, K (d - sign(d) p/2), and does nothing between the flanks.
-//!
-//! d deflections [rad], M mass matrix without the moving mass's along the slide, which there goes its own way [kg m2], D = b K (Kelvin and Voigt), J_n, J_t,
-//! J_a levers of the ball along bisector, edge and slide [m], F contact force, c its share along the slide, G what the device pushes the moving mass with, T
-//! friction along the edge, regularised so that there is none at rest, S friction across it (`contact_friction`), a the slide's direction, tau what the motors' acceleration takes. (Spong, J. Dyn. Syst. Meas. Control 109,
-//! 1987; gravity and Coriolis torques are taken to be compensated.)
+//! d deflections [rad], M mass matrix without the moving mass's along the slide, which there goes its own way [kg m2], D = b K and K of springs with play
+//! (`physics::joint_spring`), J_n, J_t, J_a levers of the ball along bisector, edge and slide [m], F contact force, c its share along the slide, G what the
+//! device pushes the moving mass with, T friction along the edge, regularised so that there is none at rest, S friction across it (`contact_friction`), a the
+//! slide's direction, tau what the motors' acceleration takes. Gravity and Coriolis torques are taken to be compensated.
 //!
 //! Trapezoidal in springs and contact, implicit in friction, all in the speeds at the end of a step.
 
 use super::arm_trajectory::{ArmTrajectory, ContactKinematics, INERTIA_EVERY, SLIDING};
 use super::cell_parameters::{CellParameters, MOST_JOINTS};
+use crate::physics::joint_spring::JointSpring;
 use glam::DVec3;
 use nalgebra::DMatrix;
 
@@ -101,9 +100,7 @@ impl<'a> JointDeflections<'a> {
         for j in 0..self.count {
             let load =
                 self.trajectory.jacobians[i].axial[j] * push + self.trajectory.joints[j].torque[i];
-            let half = 0.5 * self.cell.joint_play[j];
-            let side = if load == 0.0 { 0.0 } else { -load.signum() };
-            self.deflection[j] = -load / self.stiffness(j) + side * half;
+            self.deflection[j] = -self.spring(j).under(load);
         }
     }
 
@@ -151,9 +148,13 @@ impl<'a> JointDeflections<'a> {
         std::array::from_fn(|j| fixed[j] + stroke * turn[j])
     }
 
-    /// Stiffness of a joint, one that does not give being stiffer than any [N m/rad].
-    fn stiffness(&self, joint: usize) -> f64 {
-        self.cell.joint_stiffness[joint].min(FIRM)
+    /// Spring of a joint, of one that does not give stiffer than any.
+    fn spring(&self, joint: usize) -> JointSpring {
+        JointSpring {
+            stiffness: self.cell.joint_stiffness[joint].min(FIRM),
+            damping_time: self.cell.joint_damping,
+            play: self.cell.joint_play[joint],
+        }
     }
 
     /// Where the surface is now, and where it goes.
@@ -201,7 +202,7 @@ impl<'a> JointDeflections<'a> {
             apart: self.apart(),
         };
         let inertia = &self.trajectory.inertia[key.inertia];
-        let (stiffness, halved, rest) = self.springs(h, key.apart);
+        let (stiffness, halved, rest) = self.springs(h);
         // The contact over the step: as it is, with what the piston and the swing do to it by its middle.
         let [spring, damper] = if key.touching {
             [forces.stiffness, forces.damping]
@@ -265,20 +266,18 @@ impl<'a> JointDeflections<'a> {
     /// Joints whose teeth are apart, one bit each.
     fn apart(&self) -> u8 {
         (0..self.count)
-            .filter(|j| self.deflection[*j].abs() < 0.5 * self.cell.joint_play[*j])
+            .filter(|j| !self.spring(*j).engaged(self.deflection[*j]))
             .fold(0, |bits, j| bits | 1 << j)
     }
 
     /// Stiffness [N m/rad], half of what damping and springs take over a step [N m s/rad], and where the springs rest [rad], of each joint.
-    fn springs(&self, h: f64, apart: u8) -> (Joints, Joints, Joints) {
+    fn springs(&self, h: f64) -> (Joints, Joints, Joints) {
         let (mut stiffness, mut halved, mut rest) =
             ([0.0; MOST_JOINTS], [0.0; MOST_JOINTS], [0.0; MOST_JOINTS]);
         for j in 0..self.count {
-            if apart & 1 << j == 0 {
-                stiffness[j] = self.stiffness(j);
-            }
-            halved[j] = (0.5 * self.cell.joint_damping + 0.25 * h) * stiffness[j];
-            rest[j] = 0.5 * self.cell.joint_play[j] * self.deflection[j].signum();
+            let spring = self.spring(j);
+            (stiffness[j], rest[j]) = spring.at(self.deflection[j]);
+            halved[j] = (0.5 * spring.damping_time + 0.25 * h) * stiffness[j];
         }
         (stiffness, halved, rest)
     }

@@ -10,16 +10,18 @@
 //! only through each other.
 
 mod arm_trajectory;
-mod carrier;
 mod cell_parameters;
 mod chain;
 mod contact;
 mod contact_friction;
+mod cubic;
 pub mod flange;
+mod hold;
 mod initial_state;
 mod inputs;
 mod joint_deflections;
 mod latent;
+mod load;
 mod measured_motion;
 mod moment;
 mod nudging;
@@ -29,6 +31,7 @@ mod parameters;
 mod port;
 pub mod registry;
 mod riding;
+mod running_device;
 mod running_sensors;
 mod sensors;
 mod servo;
@@ -42,10 +45,12 @@ pub use arm_trajectory::{
 };
 pub use cell_parameters::{Burr, CellParameters, MOST_JOINTS, Relief};
 pub use chain::{Chain, LinkParameters};
-pub use contact::{ContactLaw, ContactParameters, PHASES, Periodic, StepContact};
+pub use contact::{ContactLaw, ContactParameters, PHASES, Periodic};
+pub use cubic::Cubic;
 pub use initial_state::{HeldMotion, InitialState};
 pub use inputs::{InputError, PlantInputs};
 pub use latent::{Basis, Formula, Latent, MOST_COEFFICIENTS};
+pub use load::{PistonLoad, Touch};
 pub use measured_motion::MeasuredMotion;
 pub use moment::{Moment, Variable};
 pub use nudging::Nudging;
@@ -57,10 +62,10 @@ pub use own_law::{
 pub use parameters::PlantParameters;
 pub use port::Port;
 pub use registry::{Number, Quantity};
+pub use running_device::RunningDevice;
 pub use running_sensors::{RunningSensors, SensorReadings};
 pub use sensors::SensorErrors;
 pub use servo::{Followed, follow, shown};
-pub use sharp_edge::{EdgeStation, SharpEdge, Touch};
+pub use sharp_edge::{EdgeStation, EdgeTouch, SharpEdge};
 pub use simulate::{PlantTrajectory, readings, simulate, true_trajectory};
-pub use terms::ForceTerms;
 pub use trajectory::{CHANNELS, Channel, Trajectory};

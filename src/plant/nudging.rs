@@ -16,6 +16,8 @@ const RATE: f64 = 62.8;
 
 /// Speed below which a piston counts as resting [m/s].
 const SLOW: f64 = 0.01;
+/// Acceleration by which a speed may change where none was measured [m/s2].
+const UNKNOWN: f64 = 20.0;
 /// Samples on either side in which a jump of the acceleration is felt.
 const NEAR: usize = 3;
 
@@ -37,10 +39,6 @@ impl Nudging {
     }
 
     /// From times [s], stroke [m] and acceleration [m/s2], NaN where there is no value, and their noise.
-    #[expect(
-        clippy::too_many_lines,
-        reason = "a filter and its smoother, which share all matrices"
-    )]
     pub fn new(
         time: &[f64],
         stroke: &[f64],
@@ -49,108 +47,16 @@ impl Nudging {
         acceleration_noise: f64,
         touching: impl Fn(usize) -> bool,
     ) -> Self {
-        let count = time.len();
-        // An impact between two samples moves the speed by more than the accelerometer's noise tells.
-        let surprise = |i: usize| {
-            let jump = [i.wrapping_sub(1), i, i + 1].map(|j| {
-                acceleration
-                    .get(j)
-                    .copied()
-                    .filter(|a| a.is_finite())
-                    .unwrap_or(f64::NAN)
-            });
-            let finite: Vec<f64> = jump.into_iter().filter(|a| a.is_finite()).collect();
-            if finite.is_empty() {
-                return 20.0;
-            }
-            let high = finite.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-            let low = finite.iter().copied().fold(f64::INFINITY, f64::min);
-            acceleration_noise + 0.5 * (high - low)
-        };
-        let first = stroke
-            .iter()
-            .copied()
-            .find(|x| x.is_finite())
-            .unwrap_or(0.0);
-        let r = stroke_noise * stroke_noise;
-        let mut state = [first, 0.0];
-        let mut cov = [r, 0.0, 1e-6];
-        let mut filtered = Vec::with_capacity(count);
-        let mut predicted = Vec::with_capacity(count);
-        for i in 0..count {
-            if i > 0 {
-                let h = time[i] - time[i - 1];
-                let pair = [acceleration[i - 1], acceleration[i]];
-                let known: Vec<f64> = pair.into_iter().filter(|a| a.is_finite()).collect();
-                let a = if known.is_empty() {
-                    0.0
-                } else {
-                    known.iter().sum::<f64>() / known.len() as f64
-                };
-                let q = surprise(i).powi(2);
-                state = [state[0] + h * state[1] + 0.5 * h * h * a, state[1] + h * a];
-                let [pxx, pxv, pvv] = cov;
-                cov = [
-                    pxx + 2.0 * h * pxv + h * h * pvv + 0.25 * h.powi(4) * q,
-                    pxv + h * pvv + 0.5 * h.powi(3) * q,
-                    pvv + h * h * q,
-                ];
-            }
-            predicted.push((state, cov));
-            if stroke[i].is_finite() {
-                let s = cov[0] + r;
-                let gain = [cov[0] / s, cov[1] / s];
-                let innovation = stroke[i] - state[0];
-                state = [
-                    state[0] + gain[0] * innovation,
-                    state[1] + gain[1] * innovation,
-                ];
-                let [pxx, pxv, pvv] = cov;
-                cov = [
-                    (1.0 - gain[0]) * pxx,
-                    (1.0 - gain[0]) * pxv,
-                    pvv - gain[1] * pxv,
-                ];
-            }
-            filtered.push((state, cov));
-        }
-        let mut smooth = vec![filtered[count - 1].0; count];
-        for i in (0..count - 1).rev() {
-            let h = time[i + 1] - time[i];
-            let (x, p) = filtered[i];
-            let (xp, pp) = predicted[i + 1];
-            let determinant = pp[0] * pp[2] - pp[1] * pp[1];
-            if determinant <= 0.0 || determinant.is_nan() {
-                smooth[i] = x;
-                continue;
-            }
-            // C = P F' P_p^-1, F = [[1, h], [0, 1]]
-            let pf = [p[0] + h * p[1], p[1], p[1] + h * p[2], p[2]];
-            let inverse = [
-                pp[2] / determinant,
-                -pp[1] / determinant,
-                pp[0] / determinant,
-            ];
-            let c = [
-                pf[0] * inverse[0] + pf[1] * inverse[1],
-                pf[0] * inverse[1] + pf[1] * inverse[2],
-                pf[2] * inverse[0] + pf[3] * inverse[1],
-                pf[2] * inverse[1] + pf[3] * inverse[2],
-            ];
-            let d = [smooth[i + 1][0] - xp[0], smooth[i + 1][1] - xp[1]];
-            smooth[i] = [
-                x[0] + c[0] * d[0] + c[1] * d[1],
-                x[1] + c[2] * d[0] + c[3] * d[1],
-            ];
-        }
+        let smooth = smoothed(
+            time,
+            stroke,
+            acceleration,
+            [stroke_noise, acceleration_noise],
+        );
         let gain = |i: usize| {
-            let near = &acceleration[i.saturating_sub(NEAR)..(i + NEAR + 1).min(count)];
-            let known = near.iter().filter(|a| a.is_finite());
-            let (low, high) = known.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), a| {
-                (l.min(*a), h.max(*a))
-            });
+            let near = &acceleration[i.saturating_sub(NEAR)..(i + NEAR + 1).min(time.len())];
             // Seven samples of noise range over 2.7 standard deviations.
-            let jump = ((high - low) / (6.0 * acceleration_noise)).max(0.0);
+            let jump = (range(near) / (6.0 * acceleration_noise)).max(0.0);
             1.0 / (1.0 + jump.powi(4))
         };
         // At rest and in contact there is no timing to lose, and to shake a resting piston would undo its seals' friction.
@@ -159,20 +65,125 @@ impl Nudging {
             let square = speed * speed;
             square / (1.0 + square)
         };
+        let held = |i: usize| match touching(i) {
+            true => 0.0,
+            false => moving(i) * gain(i),
+        };
         Self {
-            gain: (0..count)
-                .map(|i| {
-                    if touching(i) {
-                        0.0
-                    } else {
-                        moving(i) * gain(i)
-                    }
-                })
-                .collect(),
+            gain: (0..time.len()).map(held).collect(),
             stroke: smooth.iter().map(|s| s[0]).collect(),
             speed: smooth.iter().map(|s| s[1]).collect(),
         }
     }
+}
+
+/// Largest less smallest of the values that there are; negative infinite where there are none.
+fn range(values: &[f64]) -> f64 {
+    let known = values.iter().filter(|value| value.is_finite());
+    let ends = (f64::INFINITY, f64::NEG_INFINITY);
+    let (low, high) = known.fold(ends, |(low, high), value| {
+        (low.min(*value), high.max(*value))
+    });
+    high - low
+}
+
+/// Stroke [m] and speed [m/s] as estimated, and their covariance: of stroke, of both, of speed.
+#[derive(Clone, Copy)]
+struct Estimate {
+    state: [f64; 2],
+    covariance: [f64; 3],
+}
+
+impl Estimate {
+    /// A time `h` [s] later, under an acceleration [m/s2] that is off by so much squared.
+    fn later(self, h: f64, a: f64, q: f64) -> Self {
+        let ([x, v], [xx, xv, vv]) = (self.state, self.covariance);
+        Self {
+            state: [x + h * v + 0.5 * h * h * a, v + h * a],
+            covariance: [
+                xx + 2.0 * h * xv + h * h * vv + 0.25 * h.powi(4) * q,
+                xv + h * vv + 0.5 * h.powi(3) * q,
+                vv + h * h * q,
+            ],
+        }
+    }
+
+    /// With a stroke that was measured [m] with a variance.
+    fn with(self, stroke: f64, variance: f64) -> Self {
+        let ([x, v], [xx, xv, vv]) = (self.state, self.covariance);
+        let total = xx + variance;
+        let gain = [xx / total, xv / total];
+        let innovation = stroke - x;
+        Self {
+            state: [x + gain[0] * innovation, v + gain[1] * innovation],
+            covariance: [
+                (1.0 - gain[0]) * xx,
+                (1.0 - gain[0]) * xv,
+                vv - gain[1] * xv,
+            ],
+        }
+    }
+
+    /// State as the smoothed one a time `h` [s] later has it, which was predicted from here: x + C (s - x_p), C = P F' P_p^-1, F = [[1, h], [0, 1]].
+    fn smoothed(self, h: f64, predicted: &Self, later: [f64; 2]) -> [f64; 2] {
+        let ([x, v], [xx, xv, vv]) = (self.state, self.covariance);
+        let [pxx, pxv, pvv] = predicted.covariance;
+        let determinant = pxx * pvv - pxv * pxv;
+        if determinant <= 0.0 || determinant.is_nan() {
+            return self.state;
+        }
+        let pf = [xx + h * xv, xv, xv + h * vv, vv];
+        let inverse = [pvv / determinant, -pxv / determinant, pxx / determinant];
+        let c = [
+            pf[0] * inverse[0] + pf[1] * inverse[1],
+            pf[0] * inverse[1] + pf[1] * inverse[2],
+            pf[2] * inverse[0] + pf[3] * inverse[1],
+            pf[2] * inverse[1] + pf[3] * inverse[2],
+        ];
+        let d = [0, 1].map(|k| later[k] - predicted.state[k]);
+        [x + c[0] * d[0] + c[1] * d[1], v + c[2] * d[0] + c[3] * d[1]]
+    }
+}
+
+/// Stroke [m] and speed [m/s] at each sample from noisy readings, forward by a filter and backward by its smoother.
+fn smoothed(
+    time: &[f64],
+    stroke: &[f64],
+    acceleration: &[f64],
+    [stroke_noise, acceleration_noise]: [f64; 2],
+) -> Vec<[f64; 2]> {
+    let count = time.len();
+    // An impact between two samples moves the speed by more than the accelerometer's noise tells.
+    let surprise = |i: usize| match range(&acceleration[i - 1..(i + 2).min(count)]) {
+        f64::NEG_INFINITY => UNKNOWN,
+        range => acceleration_noise + 0.5 * range,
+    };
+    let first = stroke.iter().copied().find(|x| x.is_finite());
+    let variance = stroke_noise * stroke_noise;
+    let mut estimate = Estimate {
+        state: [first.unwrap_or(0.0), 0.0],
+        covariance: [variance, 0.0, 1e-6],
+    };
+    let (mut filtered, mut predicted) = (Vec::with_capacity(count), Vec::with_capacity(count));
+    for i in 0..count {
+        if i > 0 {
+            let pair = acceleration[i - 1..=i].iter().copied();
+            let known: Vec<f64> = pair.filter(|a| a.is_finite()).collect();
+            let a = known.iter().sum::<f64>() / known.len().max(1) as f64;
+            estimate = estimate.later(time[i] - time[i - 1], a, surprise(i).powi(2));
+        }
+        predicted.push(estimate);
+        if stroke[i].is_finite() {
+            estimate = estimate.with(stroke[i], variance);
+        }
+        filtered.push(estimate);
+    }
+    let mut smooth = vec![estimate.state; count];
+    for i in (0..count - 1).rev() {
+        let h = time[i + 1] - time[i];
+        smooth[i] = filtered[i].smoothed(h, &predicted[i + 1], smooth[i + 1]);
+    }
+    smooth
 }
 
 #[cfg(test)]

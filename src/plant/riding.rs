@@ -7,7 +7,7 @@
 //! On a sharp edge c and s are those of the tangent plane of the distance at the present stroke; over a sample they err by its curvature alone.
 
 use super::arm_trajectory::{ArmTrajectory, ContactKinematics};
-use super::carrier::hermite;
+use super::cubic::Cubic;
 use super::sharp_edge::SharpEdge;
 use glam::DVec3;
 
@@ -16,10 +16,14 @@ use glam::DVec3;
 pub(super) struct Riding {
     /// Share c [1].
     pub share: f64,
-    /// Surface s: coefficients of 1, t, t2, t3 [m].
-    pub surface: [f64; 4],
+    /// Surface s [m].
+    pub surface: Cubic,
     /// Normal of the part [1].
     pub normal: DVec3,
+    /// Displacement of the ball by links that swing [m].
+    pub away: DVec3,
+    /// Length of the sample [s].
+    pub length: f64,
 }
 
 impl Riding {
@@ -28,8 +32,7 @@ impl Riding {
         trajectory: &ArmTrajectory,
         sharp: &SharpEdge,
         kinematics: &ContactKinematics,
-        i: usize,
-        h: f64,
+        (i, h): (usize, f64),
         stroke: f64,
         away: DVec3,
     ) -> Self {
@@ -49,11 +52,13 @@ impl Riding {
             let (before, after) = (j.saturating_sub(1), (j + 1).min(last));
             (at(after) - at(before)) / (trajectory.time[after] - trajectory.time[before])
         };
-        let surface = hermite(h, [at(i), at(next)], [slope(i), slope(next)]);
+        let surface = Cubic::hermite(h, [at(i), at(next)], [slope(i), slope(next)]);
         Self {
             share,
             surface,
             normal,
+            away,
+            length: h,
         }
     }
 }

@@ -1,13 +1,6 @@
-//! A joint's servo as its owner describes it: the motor follows its command as a critically damped second-order lag.
-//!
-//! ```text
-//! q'' = w^2 (u - q) - 2 w q',   w = 2 pi f
-//! ```
-//!
-//! Exact for commands that are linear between samples (Franklin, Powell, Workman, Digital Control, 1998, sec. 4.3: first-order hold).
+//! The motion of a joint's motor in a recording: it follows its command as a critically damped lag (`physics::command_lag`), and as its encoder shows.
 
-use std::f64::consts::TAU;
-
+use crate::physics::command_lag::CommandLag;
 use nalgebra::{Matrix3, Vector3};
 
 /// Angles of one motor.
@@ -29,24 +22,12 @@ pub fn follow(time: &[f64], command: &[f64], bandwidth: f64) -> Followed {
                 .collect(),
         };
     }
-    let w = TAU * bandwidth;
-    let mut angle = Vec::with_capacity(command.len());
-    let mut acceleration = Vec::with_capacity(command.len());
-    let (mut q, mut v) = (command.first().copied().unwrap_or(0.0), 0.0);
-    for i in 0..command.len() {
-        if i > 0 {
-            let h = time[i] - time[i - 1];
-            let slope = (command[i] - command[i - 1]) / h;
-            // Against the steady answer to a ramp, u - 2 slope/w, the error decays as (a + b t) exp(-w t).
-            let behind = command[i - 1] - 2.0 * slope / w;
-            let a = q - behind;
-            let b = v - slope + w * a;
-            let decay = (-w * h).exp();
-            q = behind + slope * h + (a + b * h) * decay;
-            v = slope + (b - w * (a + b * h)) * decay;
-        }
-        angle.push(q);
-        acceleration.push(w * w * (command[i] - q) - 2.0 * w * v);
+    let mut lag = CommandLag::at_rest(bandwidth, command.first().copied().unwrap_or(0.0));
+    let mut angle = vec![lag.position; command.len()];
+    let mut acceleration = vec![0.0; command.len()];
+    for i in 1..command.len() {
+        acceleration[i] = lag.advance(command[i], time[i] - time[i - 1]);
+        angle[i] = lag.position;
     }
     Followed {
         angle,
@@ -141,6 +122,8 @@ fn parabola(time: &[f64], values: &[f64], i: usize) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use super::*;
 
     #[test]
@@ -196,14 +179,5 @@ mod tests {
         let errors = (50..450).map(|i| shown.angle[i] - time[i] - back(time[i]));
         let mean = errors.sum::<f64>() / 400.0;
         assert!(mean.abs() < 3e-7, "{mean}");
-    }
-
-    #[test]
-    fn a_ramp_is_followed_two_over_w_behind() {
-        let time: Vec<f64> = (0..500).map(|i| f64::from(i) * 2e-3).collect();
-        let followed = follow(&time, &time, 10.0);
-        let lag = time[499] - followed.angle[499];
-        assert!((lag - 2.0 / (TAU * 10.0)).abs() < 1e-9);
-        assert!(followed.acceleration[499].abs() < 1e-9);
     }
 }

@@ -35,7 +35,7 @@ pub struct SharpEdge {
 
 /// Where a ball touches an edge, or would.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Touch {
+pub struct EdgeTouch {
     /// Nearest point of the edge [m].
     pub point: DVec3,
     /// From the part to the ball's centre [1].
@@ -60,7 +60,7 @@ impl SharpEdge {
     }
 
     /// Where a ball with its centre there [m] touches, near a distance along the edge [m].
-    pub fn touch(&self, centre: DVec3, near: f64) -> Touch {
+    pub fn touch(&self, centre: DVec3, near: f64) -> EdgeTouch {
         let first = self.stations.partition_point(|s| *s < near - SOUGHT);
         let last = self.stations.partition_point(|s| *s <= near + SOUGHT);
         let segments = self.normals.len();
@@ -89,7 +89,7 @@ impl SharpEdge {
         let stations = [segment, segment + 1].map(|i| self.stations[i]);
         let out = centre - point;
         let (normal, distance) = self.on_faces(segment, out);
-        Touch {
+        EdgeTouch {
             point,
             normal,
             distance,

@@ -1,24 +1,28 @@
 //! A rig run on the inputs of a recording.
 
 use super::arm_trajectory::ContactKinematics;
-use super::carrier::{Hold, ReplayCarrier, hermite};
 use super::chain;
-use super::contact::StepContact;
+use super::contact::ContactParameters;
 use super::contact_friction::{AxialFriction, ContactFriction};
+use super::cubic::Cubic;
+use super::hold::Hold;
 use super::initial_state::{HeldMotion, InitialState};
 use super::inputs::PlantInputs;
-use super::joint_deflections::{Bending, DeflectedContact, JointDeflections};
+use super::joint_deflections::{Bending, JointDeflections};
+use super::load::{PistonLoad, Touch};
 use super::moment::Moment;
 use super::nudging::Nudging;
 use super::parameters::PlantParameters;
 use super::port::Port;
 use super::riding::Riding;
-use super::terms::ForceTerms;
+use super::running_device::RunningDevice;
 use super::trajectory::Trajectory;
 use crate::device::{Device, DeviceState, PistonMotion};
 use crate::physics::regulator::RegulatorState;
 use crate::physics::valve::ValvePosition;
 use crate::stats::median_step;
+use glam::DVec3;
+use std::borrow::Cow;
 
 /// A simulated recording.
 #[derive(Debug, Clone, PartialEq)]
@@ -82,10 +86,6 @@ pub fn readings(
 
 /// Runs a rig from the state in which a recording starts. A rig that is out of all proportion gives values that are not finite. A nudging holds the piston
 /// to a measured motion.
-#[expect(
-    clippy::too_many_lines,
-    reason = "the loop of all fits: its state stays in registers"
-)]
 pub fn true_trajectory(
     plant: &PlantParameters,
     inputs: &PlantInputs,
@@ -95,198 +95,277 @@ pub fn true_trajectory(
         return truth;
     }
     let device = Device::new(plant.with_friction_of_terms(plant.device.clone()));
-    let mass = plant.device.moving_mass;
-    let kinematics = inputs
-        .cell
-        .as_ref()
-        .map(|trajectory| trajectory.contact_kinematics(&plant.cell));
-    let moved = kinematics.as_ref().map(ContactKinematics::surface);
-    let surface = moved.as_ref().unwrap_or(&inputs.surface);
-    let pull = |i: usize| {
-        let kinematics = kinematics.as_ref().map(|kinematics| kinematics.pull[i]);
-        mass * kinematics.unwrap_or(plant.gravity_along_extension)
-    };
-    let pressing = inputs
-        .cell
-        .as_ref()
-        .is_some_and(|c| c.observed.starts_pressing);
-    let (mut motion, mut state) = match &inputs.initial {
-        InitialState::AtRest => at_rest(plant, &device, inputs, pressing, pull(0)),
-        InitialState::Anywhere(held) => on_its_way(plant, &device, inputs, held),
-    };
-    let mut joint_deflections = inputs
-        .cell
-        .as_ref()
-        .and_then(|trajectory| JointDeflections::new(trajectory, &plant.cell));
-    if let (true, Some(joint_deflections), Some(kinematics)) =
-        (pressing, &mut joint_deflections, &kinematics)
-    {
-        let push = device.piston_force(&state, motion) + pull(0) + kinematics.carried[0];
-        joint_deflections.settle(0, push);
-    }
-    let sharp = inputs.cell.as_ref().and_then(|trajectory| {
-        let sharp = trajectory.sharp.as_ref()?;
-        Some((trajectory, sharp))
-    });
-    let count = inputs.time.len();
+    let replay = Replay::new(plant, inputs, nudging);
+    let mut rig = replay.start(&device);
     let mut truth = Trajectory::default();
-    let mut entered = 0.0;
-    let law = plant.contact.in_recording(inputs.place);
-    let rate = law.rate(mass);
-    let usual = median_step(&inputs.time);
-    let mut contact_friction = ContactFriction::default();
-    for i in 0..count {
-        state.valve = if inputs.extends[i] {
-            ValvePosition::Extend
-        } else {
-            ValvePosition::Retract
-        };
-        let last = i + 1 == count;
-        let h = if last {
-            usual
-        } else {
-            inputs.time[i + 1] - inputs.time[i]
-        };
-        let next = if last { i } else { i + 1 };
-        let present = surface[i].is_finite() && surface[next].is_finite();
-        let mut carrier = ReplayCarrier {
-            contact: StepContact::plain(&law),
-            present,
-            weight: [pull(i), (pull(next) - pull(i)) / h],
-            share: 1.0,
-            burr: None,
-            burr_damped: sharp.is_some(),
-            deflected: DeflectedContact::default(),
-            start: inputs.time[i],
-            surface: [0.0; 4],
-            rate: if present { rate } else { 0.0 },
-            hold: None,
-            terms: ForceTerms::default(),
-            friction: AxialFriction::default(),
-        };
-        if let Some(kinematics) = &kinematics {
-            carrier.share = kinematics.share[i];
-            let rise = (kinematics.burr[next] - kinematics.burr[i]) / h;
-            carrier.burr = Some([kinematics.burr[i], rise]);
+    for i in 0..inputs.time.len() {
+        replay.advance(&mut rig, i, &mut truth);
+    }
+    truth
+}
+
+/// What drives a rig from sample to sample.
+struct Replay<'a> {
+    plant: &'a PlantParameters,
+    inputs: &'a PlantInputs,
+    nudging: Option<&'a Nudging>,
+    /// Motion of a cell's contact.
+    kinematics: Option<ContactKinematics>,
+    /// Where the surface stands along the stroke [m].
+    surface: Cow<'a, [f64]>,
+    /// The contact as this recording has it.
+    contact: ContactParameters,
+    /// Usual time from sample to sample [s].
+    usual: f64,
+}
+
+/// State of a rig.
+struct RunningRig<'a> {
+    device: RunningDevice<'a>,
+    joints: Option<JointDeflections<'a>>,
+    friction: ContactFriction,
+}
+
+/// From a sample to the next.
+#[derive(Debug, Clone, Copy)]
+struct Span {
+    from: usize,
+    to: usize,
+    /// Time between them [s].
+    length: f64,
+}
+
+impl<'a> Replay<'a> {
+    fn new(
+        plant: &'a PlantParameters,
+        inputs: &'a PlantInputs,
+        nudging: Option<&'a Nudging>,
+    ) -> Self {
+        let cell = inputs.cell.as_ref();
+        let kinematics = cell.map(|trajectory| trajectory.contact_kinematics(&plant.cell));
+        let moved = kinematics.as_ref().map(ContactKinematics::surface);
+        Self {
+            plant,
+            inputs,
+            nudging,
+            kinematics,
+            surface: moved.map_or(Cow::Borrowed(&inputs.surface), Cow::Owned),
+            contact: plant.contact.in_recording(inputs.place),
+            usual: median_step(&inputs.time),
         }
-        carrier.hold = match (nudging, inputs.initial.held_at(i)) {
-            (_, Some(held)) => Some(hold(plant, h, [&held.stroke, &held.speed], (i, next), 1.0)),
-            (Some(nudging), None) => {
-                let motion = [nudging.stroke.as_slice(), &nudging.speed];
-                Some(hold(plant, h, motion, (i, next), nudging.gain[i]))
-            }
-            (None, None) => None,
+    }
+
+    /// Gravity and the arm's acceleration on the moving mass along extension at a sample [N].
+    fn pull(&self, i: usize) -> f64 {
+        let kinematics = self.kinematics.as_ref();
+        let pull = kinematics.map_or(self.plant.gravity_along_extension, |k| k.pull[i]);
+        self.plant.device.moving_mass * pull
+    }
+
+    /// The rig in the state in which the recording starts.
+    fn start(&self, device: &'a Device) -> RunningRig<'a> {
+        let (plant, inputs) = (self.plant, self.inputs);
+        let cell = inputs.cell.as_ref();
+        let pressing = cell.is_some_and(|c| c.observed.starts_pressing);
+        let (motion, state) = match &inputs.initial {
+            InitialState::AtRest => at_rest(plant, device, inputs, pressing, self.pull(0)),
+            InitialState::Anywhere(held) => on_its_way(plant, device, inputs, held),
         };
-        if present {
-            carrier.surface = hermite(
-                h,
-                [surface[i], surface[next]],
-                [inputs.slope(surface, i), inputs.slope(surface, next)],
-            );
+        let mut joints = cell.and_then(|trajectory| JointDeflections::new(trajectory, &plant.cell));
+        if let (true, Some(joints), Some(kinematics)) = (pressing, &mut joints, &self.kinematics) {
+            let push = device.piston_force(&state, motion) + self.pull(0) + kinematics.carried[0];
+            joints.settle(0, push);
         }
-        let mut normal = None;
-        if let (Some((trajectory, sharp)), Some(kinematics)) = (sharp, &kinematics) {
-            let stroke = motion.stroke + 0.5 * h * motion.speed;
-            let away = joint_deflections
-                .as_ref()
-                .map(|joint_deflections| joint_deflections.away(i, stroke));
-            let away = away.unwrap_or_default();
-            let riding = Riding::on(trajectory, sharp, kinematics, i, h, stroke, away);
-            carrier.share = riding.share;
-            carrier.surface = riding.surface;
-            normal = Some(riding.normal);
-            let centre = kinematics.balls[i] + kinematics.slides[i] * motion.stroke
-                - kinematics.aside[i]
-                + away;
-            let force = carrier.contact_force(0.0, motion);
-            let give = joint_deflections.as_ref().map_or(0.0, |joint_deflections| {
-                h * joint_deflections.mobility(i, motion.stroke, riding.normal)
-            });
-            carrier.friction = contact_friction.advance(
-                centre,
-                (riding.normal, force),
-                (plant.cell.friction, plant.contact.stiffness_at(force)),
-                give,
-                (kinematics.slides[i], motion.stroke),
-            );
+        RunningRig {
+            device: RunningDevice::new(plant, device, (motion, state)),
+            joints,
+            friction: ContactFriction::default(),
         }
+    }
+
+    /// The time from a sample on; behind the last one as long as usual.
+    fn span(&self, from: usize) -> Span {
+        let time = &self.inputs.time;
+        let to = (from + 1).min(time.len() - 1);
+        let length = match to == from {
+            true => self.usual,
+            false => time[to] - time[from],
+        };
+        Span { from, to, length }
+    }
+
+    /// Notes a sample, and runs on to the next.
+    fn advance(&self, rig: &mut RunningRig<'_>, i: usize, truth: &mut Trajectory) {
+        let (inputs, span) = (self.inputs, self.span(i));
+        rig.device.state.valve = match inputs.extends[i] {
+            true => ValvePosition::Extend,
+            false => ValvePosition::Retract,
+        };
+        let present = [span.from, span.to].map(|j| self.surface[j].is_finite()) == [true; 2];
+        let riding = self.riding(rig, span);
+        let touch = self.touch(span, riding.as_ref());
+        let touches = [touch];
+        let met = usize::from(present);
+        let mut load = self.load(span, &touches[..met]);
+        if let Some(riding) = &riding {
+            load.stroke = riding.surface;
+            load.friction = self.rub(rig, i, &load, riding);
+        } else if present {
+            let ends = [span.from, span.to];
+            let slopes = ends.map(|j| inputs.slope(&self.surface, j));
+            load.stroke = Cubic::hermite(span.length, ends.map(|j| self.surface[j]), slopes);
+        }
+        let set_pressure = inputs.set_pressure[i];
         // Of what moves with a term a sample is told as it is then, and a step as it is in its middle.
-        let (mut added_outlet, mut risen) = (0.0, 0.0);
-        if plant.has_terms() {
-            let pressures = device.pressures(&state, motion.stroke);
-            let moment = Moment {
-                time: inputs.time[i],
-                stroke: motion.stroke,
-                speed: motion.speed,
-                pressures,
-                mass_flow: (state.air.entered - entered) / usual,
-                set_pressure: inputs.set_pressure[i],
-                surface: inputs.surface[i],
-                contact_force: carrier.contact_force(0.0, motion),
-            };
-            added_outlet = plant.term(Port::OutletPressure, &moment);
-            let displaced = plant.term(Port::Surface, &moment);
-            carrier.surface[0] += displaced;
-            risen = plant.term(Port::Surface, &moment.ahead(0.5 * h)) - displaced;
-            carrier.stiffen(plant.term(Port::ContactStiffness, &moment), mass);
-            state.disturbance = plant.disturbance(&moment, h);
-            carrier.terms = ForceTerms::over(plant, &moment);
+        let moment = (rig.device).meet_terms(&mut load, set_pressure, inputs.surface[i]);
+        let deflected = rig.joints.as_mut().map_or_else(Default::default, |joints| {
+            joints.face(i, riding.map(|riding| riding.normal));
+            joints.now(i, rig.device.motion.stroke, touch.share)
+        });
+        let added_outlet = moment.map_or(0.0, |now| self.plant.term(Port::OutletPressure, &now));
+        truth.note(
+            &rig.device,
+            &load.deflected(&deflected),
+            &touch,
+            added_outlet,
+        );
+        if span.to == i {
+            return;
         }
-        if let Some(joint_deflections) = &mut joint_deflections {
-            joint_deflections.face(i, normal);
-            carrier.deflected = joint_deflections.now(i, motion.stroke, carrier.share);
-        }
-        truth.note(&device, &state, motion, &carrier, added_outlet);
-        carrier.surface[0] += risen;
-        truth.mass_flow.push((state.air.entered - entered) / usual);
-        entered = state.air.entered;
-        if last {
-            break;
-        }
+        rig.device
+            .face_terms(&mut load, moment.as_ref(), span.length);
         // Over a gap in the recording the inputs are held, in steps of the usual length.
-        let least = if joint_deflections.is_some() {
+        let least = if rig.joints.is_some() {
             FLEXING_PARTS
         } else {
             1.0
         };
-        let parts = (h / usual - 0.01).ceil().max(1.0) * least;
+        let parts = (span.length / self.usual - 0.01).ceil().max(1.0) * least;
+        let dt = span.length / parts;
         for part in 0..parts as usize {
-            let mut leg = carrier;
-            if part > 0 {
-                leg.move_start(h * part as f64 / parts);
-            }
-            if let (Some(joint_deflections), Some(kinematics)) =
-                (&mut joint_deflections, &kinematics)
-            {
-                leg.deflected = joint_deflections.now(i, motion.stroke, leg.share);
-                let contact = leg.contact_force(0.0, motion);
-                let forces = Bending {
-                    contact,
-                    stiffness: plant.contact.stiffness_at(contact),
-                    damping: plant.contact.damping,
-                    friction: leg.friction.force,
-                    push: device.piston_force(&state, motion)
-                        + leg.weight[0]
-                        + kinematics.carried[i],
-                    stroke: motion.stroke,
-                    speed: motion.speed,
-                };
-                let deflected =
-                    joint_deflections.advance(kinematics, i, h / parts, leg.share, forces);
-                leg.deflected = deflected;
-                leg.weight[0] -= mass * deflected.acceleration;
-            }
-            device.advance_carried_unaudited(
-                &mut state,
-                &mut motion,
-                inputs.set_pressure[i],
-                &leg,
-                h / parts,
-                1,
-            );
+            let start = span.length * part as f64 / parts;
+            let touches = [touch.later(start)];
+            let leg = load.later(start, &touches[..met]);
+            let leg = self.bend(rig, i, leg, touch.share, dt);
+            rig.device.advance::<false>(&leg, set_pressure, (dt, 1));
+        }
+        rig.device.note_flow(self.usual);
+    }
+
+    /// Where the ball rides on a sharp edge over a span.
+    fn riding(&self, rig: &RunningRig<'_>, span: Span) -> Option<Riding> {
+        let (trajectory, kinematics) = (self.inputs.cell.as_ref()?, self.kinematics.as_ref()?);
+        let sharp = trajectory.sharp.as_ref()?;
+        let motion = rig.device.motion;
+        let stroke = motion.stroke + 0.5 * span.length * motion.speed;
+        let joints = rig.joints.as_ref();
+        let away = joints.map_or(DVec3::ZERO, |joints| joints.away(span.from, stroke));
+        let over = (span.from, span.length);
+        Some(Riding::on(
+            trajectory, sharp, kinematics, over, stroke, away,
+        ))
+    }
+
+    /// Where the tool meets the surface over a span.
+    fn touch(&self, span: Span, riding: Option<&Riding>) -> Touch {
+        let Some(kinematics) = &self.kinematics else {
+            return Touch::AXIAL;
+        };
+        let [burr, next] = [span.from, span.to].map(|j| kinematics.burr[j]);
+        Touch {
+            normal: riding.map_or(Touch::AXIAL.normal, |riding| riding.normal),
+            penetration: burr,
+            rate: (next - burr) / span.length,
+            share: riding.map_or(kinematics.share[span.from], |riding| riding.share),
+            // Of a ball that is met along the bisector its own motion is damped, whatever the shape that it meets.
+            damped: riding.is_some(),
         }
     }
-    truth
+
+    /// Load over a span but for surface, friction and terms.
+    fn load<'b>(&'b self, span: Span, touches: &'b [Touch]) -> PistonLoad<'b> {
+        let mass = self.plant.device.moving_mass;
+        let [pull, next] = [span.from, span.to].map(|j| self.pull(j));
+        let mut load = PistonLoad::new(&self.contact, mass, touches, self.inputs.time[span.from]);
+        load.axial = Cubic([pull, (next - pull) / span.length, 0.0, 0.0]);
+        load.hold = self.hold(span);
+        load
+    }
+
+    /// Hold to a measured motion over a span.
+    fn hold(&self, span: Span) -> Option<Hold> {
+        let (stroke, speed, share) = match (self.nudging, self.inputs.initial.held_at(span.from)) {
+            (_, Some(held)) => (&held.stroke, &held.speed, 1.0),
+            (Some(nudging), None) => (&nudging.stroke, &nudging.speed, nudging.gain[span.from]),
+            (None, None) => return None,
+        };
+        let (stiffness, damping) = Nudging::gains(self.plant.device.moving_mass);
+        let gain = self.plant.sensors.stroke_gain;
+        let ends = |values: &[f64]| [span.from, span.to].map(|j| values[j] / gain);
+        Some(Hold {
+            stroke: Cubic::hermite(span.length, ends(stroke), ends(speed)),
+            stiffness: share * stiffness,
+            damping: share * damping,
+        })
+    }
+
+    /// Friction of the ball on the part at the start of a span.
+    fn rub(
+        &self,
+        rig: &mut RunningRig<'_>,
+        i: usize,
+        load: &PistonLoad<'_>,
+        riding: &Riding,
+    ) -> AxialFriction {
+        let Some(kinematics) = &self.kinematics else {
+            return AxialFriction::default();
+        };
+        let (motion, slide) = (rig.device.motion, kinematics.slides[i]);
+        let centre =
+            kinematics.balls[i] + slide * motion.stroke - kinematics.aside[i] + riding.away;
+        let force = load.contact_force(0.0, motion);
+        let give = rig.joints.as_ref().map_or(0.0, |joints| {
+            riding.length * joints.mobility(i, motion.stroke, riding.normal)
+        });
+        let plant = self.plant;
+        rig.friction.advance(
+            centre,
+            (riding.normal, force),
+            (plant.cell.friction, plant.contact.stiffness_at(force)),
+            give,
+            (slide, motion.stroke),
+        )
+    }
+
+    /// A load over `dt` [s] from sample `i` on, on joints that bend under it, `share` of the contact force being along the slide.
+    fn bend<'b>(
+        &self,
+        rig: &mut RunningRig<'_>,
+        i: usize,
+        load: PistonLoad<'b>,
+        share: f64,
+        dt: f64,
+    ) -> PistonLoad<'b> {
+        let (Some(joints), Some(kinematics)) = (&mut rig.joints, &self.kinematics) else {
+            return load;
+        };
+        let (plant, motion) = (self.plant, rig.device.motion);
+        let now = load.deflected(&joints.now(i, motion.stroke, share));
+        let contact = now.contact_force(0.0, motion);
+        let forces = Bending {
+            contact,
+            stiffness: plant.contact.stiffness_at(contact),
+            damping: plant.contact.damping,
+            friction: load.friction.force,
+            push: rig.device.force() + load.axial.0[0] + kinematics.carried[i],
+            stroke: motion.stroke,
+            speed: motion.speed,
+        };
+        let bent = joints.advance(kinematics, i, dt, share, forces);
+        let mut load = load.deflected(&bent);
+        load.axial.0[0] -= plant.device.moving_mass * bent.acceleration;
+        load
+    }
 }
 
 /// Retracted on its stop, all at the atmosphere; or out on its stop at the first pressure set. A rig that presses what it holds pushes its stop in.
@@ -340,24 +419,6 @@ fn on_its_way(
     (motion, state)
 }
 
-/// A hold to a measured stroke [m] and speed [m/s] from one sample to the next, h [s] later.
-fn hold(
-    plant: &PlantParameters,
-    h: f64,
-    [stroke, speed]: [&[f64]; 2],
-    (i, next): (usize, usize),
-    share: f64,
-) -> Hold {
-    let (stiffness, damping) = Nudging::gains(plant.device.moving_mass);
-    let gain = plant.sensors.stroke_gain;
-    let pair = |values: &[f64]| [values[i] / gain, values[next] / gain];
-    Hold {
-        stroke: hermite(h, pair(stroke), pair(speed)),
-        stiffness: share * stiffness,
-        damping: share * damping,
-    }
-}
-
 /// Steps into which a sample is cut where links swing.
 const FLEXING_PARTS: f64 = 2.0;
 
@@ -378,29 +439,30 @@ impl Trajectory {
 
     fn note(
         &mut self,
-        device: &Device,
-        state: &DeviceState,
-        motion: PistonMotion,
-        carrier: &ReplayCarrier<'_>,
+        device: &RunningDevice<'_>,
+        load: &PistonLoad<'_>,
+        touch: &Touch,
         added_outlet: f64,
     ) {
-        let mass = device.parameters().moving_mass;
-        let pressures = device.pressures(state, motion.stroke);
-        let contact_force = carrier.contact_force(0.0, motion);
-        let hold_force = carrier.hold_force(0.0, motion);
-        let term_force = carrier.term_force(0.0, motion);
-        let outside = carrier.weight_at(0.0) + hold_force + term_force
-            - carrier.axial_share() * contact_force
-            - carrier.friction.at(motion.stroke);
-        let force = device.piston_force(state, motion) + outside;
+        let (state, motion) = (&device.state, device.motion);
+        let pressures = device.device.pressures(state, motion.stroke);
+        let share = load.axial_share(touch);
+        let contact_force = load.contact_force(0.0, motion);
+        let hold_force = load.hold.map_or(0.0, |hold| hold.force(0.0, motion));
+        let outside = load.axial.at(0.0) + hold_force + load.term_force(0.0, motion)
+            - share * contact_force
+            - load.friction.at(motion.stroke);
+        let force = device.force() + outside;
         self.outlet.push(state.regulator.outlet + added_outlet);
         self.stroke.push(motion.stroke);
         self.speed.push(motion.speed);
-        self.acceleration.push(force / mass);
+        self.acceleration
+            .push(force / device.device.parameters().moving_mass);
         self.contact_force.push(contact_force);
         self.hold_force.push(hold_force);
-        self.share.push(carrier.axial_share());
+        self.share.push(share);
         self.pressures[0].push(pressures[0]);
         self.pressures[1].push(pressures[1]);
+        self.mass_flow.push(device.mass_flow);
     }
 }

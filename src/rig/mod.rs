@@ -2,13 +2,13 @@
 //!
 //! It shares every line of the device with the cell; only the piston is its own.
 
-mod carrier;
 mod error;
 mod estimator;
+mod load;
 mod sample;
 mod simulation;
 
-pub use carrier::BenchCarrier;
 pub use error::RigError;
+pub use load::load_at;
 pub use sample::RigTruth;
 pub use simulation::{Rig, RigSimulation};

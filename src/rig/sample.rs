@@ -1,6 +1,5 @@
 //! Record of a bench rig at each step.
 
-use super::carrier::BenchCarrier;
 use crate::device::{Device, DeviceState, PistonMotion};
 use crate::estimation::EstimatorOutput;
 use crate::physics::valve::ValvePosition;
@@ -58,7 +57,8 @@ pub(super) struct RigSample<'a> {
     pub state: &'a DeviceState,
     pub truth: &'a RigTruth,
     pub readings: &'a Readings,
-    pub carrier: &'a BenchCarrier<'a>,
+    /// Where the load's surface stands [m]; infinite without one.
+    pub surface: f64,
     /// Set pressure that the regulator acts on [Pa gauge].
     pub set_pressure: f64,
     /// Contact force asked for [N]; NaN where pressures are.
@@ -92,7 +92,6 @@ impl RigLog {
         let atmosphere = device.parameters().gas.atmosphere;
         let pressures = device.pressures(state, truth.motion.stroke);
         let seal = device.seal_force(state, truth.motion.speed);
-        let surface = sample.carrier.surface();
         self.time.push(truth.time);
         self.rows.push([
             atmosphere + sample.set_pressure,
@@ -106,10 +105,9 @@ impl RigLog {
             truth.motion.stroke,
             truth.motion.speed,
             truth.acceleration,
-            if surface.is_finite() {
-                surface
-            } else {
-                f64::NAN
+            match sample.surface.is_finite() {
+                true => sample.surface,
+                false => f64::NAN,
             },
             f64::from(u8::from(state.valve == ValvePosition::Extend)),
             state.air.masses[0],

@@ -2,15 +2,17 @@
 
 use std::path::Path;
 
-use super::carrier::BenchCarrier;
 use super::error::RigError;
 use super::estimator::RigEstimator;
+use super::load::load_at;
 use super::sample::{RigLog, RigSample, RigTruth};
 use crate::control::force::{ForceController, ForceObservation};
 use crate::device::{Device, DeviceState, PistonMotion};
 use crate::physics::push_only::PushOnly;
 use crate::physics::valve::ValvePosition;
-use crate::plant::{Moment, PlantParameters, Port, RunningSensors, SensorReadings};
+use crate::plant::{
+    Moment, PistonLoad, PlantParameters, Port, RunningDevice, RunningSensors, SensorReadings,
+};
 use crate::recording::{Recording, RecordingError};
 use crate::scenario::bench::{BenchScenario, CommandScenario, LoadScenario};
 use crate::scenario::{ScenarioError, load_bench};
@@ -94,8 +96,7 @@ impl Rig {
 /// A running bench rig.
 pub struct RigSimulation<'a> {
     rig: &'a Rig,
-    device: DeviceState,
-    motion: PistonMotion,
+    device: RunningDevice<'a>,
     controller: ForceController,
     /// Set pressure that the controller gave last, held until its next period [Pa gauge].
     answer: f64,
@@ -104,8 +105,8 @@ pub struct RigSimulation<'a> {
     sensors: SensorChain,
     readings: Readings,
     estimator: Option<RigEstimator>,
-    /// Set pressure of the last step [Pa gauge], and the air that had come in before it [kg].
-    last: [f64; 2],
+    /// Set pressure of the last step [Pa gauge].
+    applied: f64,
     steps: usize,
     total_steps: usize,
     log: RigLog,
@@ -133,21 +134,24 @@ impl<'a> RigSimulation<'a> {
         let total_steps = (scenario.duration / scenario.step - 1e-9).ceil() as usize;
         let mut simulation = Self {
             rig,
-            device: rig.device.at_rest(stroke, 0.0),
-            motion,
+            device: RunningDevice::new(
+                &rig.plant,
+                &rig.device,
+                (motion, rig.device.at_rest(stroke, 0.0)),
+            ),
             controller: rig.controller.clone(),
             answer: 0.0,
             errors: RunningSensors::new(scenario.sensor_errors),
             sensors: SensorChain::new(&scenario.sensing, scenario.seed),
             readings: Readings::default(),
             estimator: scenario.estimator.as_ref().map(RigEstimator::new),
-            last: [0.0; 2],
+            applied: 0.0,
             steps: 0,
             total_steps,
             log: RigLog::new(total_steps + 1),
         };
-        simulation.device.valve = held(&scenario.valve, 0.0).unwrap_or(ValvePosition::Extend);
-        simulation.sample(0.0);
+        simulation.device.state.valve = held(&scenario.valve, 0.0).unwrap_or(ValvePosition::Extend);
+        simulation.sample();
         simulation
     }
 
@@ -168,12 +172,12 @@ impl<'a> RigSimulation<'a> {
 
     /// State of the device.
     pub fn device(&self) -> &DeviceState {
-        &self.device
+        &self.device.state
     }
 
     /// Motion of the piston.
     pub fn motion(&self) -> PistonMotion {
-        self.motion
+        self.device.motion
     }
 
     /// Time [s].
@@ -209,29 +213,17 @@ impl<'a> RigSimulation<'a> {
     pub fn step(&mut self) -> Result<(), RigError> {
         let scenario = &self.rig.scenario;
         let time = self.time();
-        self.device.valve = held(&scenario.valve, time).unwrap_or(ValvePosition::Extend);
+        self.device.state.valve = held(&scenario.valve, time).unwrap_or(ValvePosition::Extend);
         let wanted = self.set_pressure(time);
-        let set_pressure = self.sensors.command(wanted, scenario.step);
-        let mut carrier = BenchCarrier::at(scenario, time);
-        if self.rig.plant.has_terms() {
-            let moment = Moment {
-                set_pressure,
-                ..self.moment(&carrier)
-            };
-            carrier = carrier.with_terms(&self.rig.plant, moment, scenario.step);
-            self.device.disturbance = self.rig.plant.disturbance(&moment, scenario.step);
-        }
-        self.last = [set_pressure, self.device.air.entered];
-        self.rig.device.advance_carried(
-            &mut self.device,
-            &mut self.motion,
-            set_pressure,
-            &carrier,
-            scenario.step,
-            scenario.substeps,
-        );
+        self.applied = self.sensors.command(wanted, scenario.step);
+        let (mut load, moment) = self.load();
+        let cut = (scenario.step, scenario.substeps);
+        self.device
+            .face_terms(&mut load, moment.as_ref(), scenario.step);
+        self.device.advance::<true>(&load, self.applied, cut);
+        self.device.note_flow(scenario.step);
         self.steps += 1;
-        self.sample(set_pressure);
+        self.sample();
         self.check()
     }
 
@@ -264,65 +256,49 @@ impl<'a> RigSimulation<'a> {
         }
     }
 
-    /// The variables of now.
-    fn moment(&self, carrier: &BenchCarrier<'_>) -> Moment {
-        let [set_pressure, entered] = self.last;
-        Moment {
-            time: self.time(),
-            stroke: self.motion.stroke,
-            speed: self.motion.speed,
-            pressures: self.rig.device.pressures(&self.device, self.motion.stroke),
-            mass_flow: (self.device.air.entered - entered) / self.rig.scenario.step,
-            set_pressure,
-            surface: carrier.surface(),
-            contact_force: carrier.contact_force(0.0, self.motion),
-        }
-    }
-
-    /// Loads on the piston now.
-    fn carrier(&self) -> BenchCarrier<'_> {
-        let carrier = BenchCarrier::at(&self.rig.scenario, self.time());
-        if self.rig.plant.has_terms() {
-            let moment = self.moment(&carrier);
-            carrier.with_terms(&self.rig.plant, moment, 0.0)
-        } else {
-            carrier
-        }
+    /// The load on the piston now, and the moment that its terms are of.
+    fn load(&self) -> (PistonLoad<'a>, Option<Moment>) {
+        let mut load = load_at(&self.rig.scenario, self.time());
+        let surface = load.surface();
+        let moment = (self.device).meet_terms(&mut load, self.applied, surface);
+        (load, moment)
     }
 
     /// True state of the rig now.
     pub fn truth(&self) -> RigTruth {
-        let scenario = &self.rig.scenario;
-        let carrier = self.carrier();
-        let device = &self.rig.device;
-        let mass = scenario.device.parameters.moving_mass;
-        let force = device.piston_force(&self.device, self.motion);
-        let contact_force = carrier.contact_force(0.0, self.motion);
-        let added_outlet = match self.rig.plant.acts_at(Port::OutletPressure) {
-            true => (self.rig.plant).term(Port::OutletPressure, &self.moment(&carrier)),
-            false => 0.0,
-        };
-        let outside = mass * scenario.gravity_along_extension - carrier.hand_force()
-            + carrier.term_force(0.0, self.motion);
+        let (load, moment) = self.load();
+        self.truth_under(&load, moment.as_ref())
+    }
+
+    fn truth_under(&self, load: &PistonLoad<'_>, moment: Option<&Moment>) -> RigTruth {
+        let (plant, device, motion) = (&self.rig.plant, &self.rig.device, self.device.motion);
+        let force = device.piston_force(&self.device.state, motion);
+        let contact_force = load.contact_force(0.0, motion);
+        let added_outlet = moment.map_or(0.0, |now| plant.term(Port::OutletPressure, now));
+        let outside = load.axial.at(0.0) + load.term_force(0.0, motion);
         RigTruth {
             time: self.time(),
-            motion: self.motion,
-            acceleration: (force + outside - contact_force) / mass,
+            motion,
+            acceleration: (force + outside - contact_force) / device.parameters().moving_mass,
             contact_force,
-            regulator_pressure: self.device.regulator.outlet + added_outlet,
+            regulator_pressure: self.device.state.regulator.outlet + added_outlet,
         }
     }
 
-    fn sample(&mut self, set_pressure: f64) {
-        let truth = self.truth();
+    fn sample(&mut self) {
+        let (load, moment) = self.load();
+        let truth = self.truth_under(&load, moment.as_ref());
         let there = SensorReadings {
             force: truth.contact_force,
             stroke: truth.motion.stroke,
             regulator_pressure: truth.regulator_pressure,
         };
         let mut read = self.errors.read(truth.time, &there, truth.acceleration);
-        if self.rig.plant.has_terms() {
-            read.add(self.rig.plant.reading_terms(&self.moment(&self.carrier())));
+        if let Some(moment) = moment {
+            read.add(self.rig.plant.reading_terms(&Moment {
+                contact_force: truth.contact_force,
+                ..moment
+            }));
         }
         self.readings = self.sensors.measure(
             truth.time,
@@ -337,25 +313,23 @@ impl<'a> RigSimulation<'a> {
             CommandScenario::Force(steps) => held(steps, truth.time).unwrap_or(0.0),
             CommandScenario::SetPressure(_) => f64::NAN,
         };
-        let estimate = self
-            .estimator
-            .as_mut()
-            .and_then(|estimator| estimator.update(truth.time, &self.readings, self.device.valve));
-        let carrier = BenchCarrier::at(&self.rig.scenario, truth.time);
+        let estimate = self.estimator.as_mut().and_then(|estimator| {
+            estimator.update(truth.time, &self.readings, self.device.state.valve)
+        });
         self.log.push(&RigSample {
             device: &self.rig.device,
-            state: &self.device,
+            state: &self.device.state,
             truth: &truth,
             readings: &self.readings,
-            carrier: &carrier,
-            set_pressure,
+            surface: load_at(&self.rig.scenario, truth.time).surface(),
+            set_pressure: self.applied,
             desired_force: desired,
             estimate,
         });
     }
 
     fn check(&self) -> Result<(), RigError> {
-        let air = &self.device.air;
+        let air = &self.device.state.air;
         let named = [
             ("the air in chamber 1 [kg]", air.masses[0]),
             ("the air in chamber 2 [kg]", air.masses[1]),
@@ -364,7 +338,7 @@ impl<'a> RigSimulation<'a> {
             .into_iter()
             .find(|(_, mass)| !mass.is_finite() || *mass <= 0.0)
             .or_else(|| {
-                let stroke = self.motion.stroke;
+                let stroke = self.device.motion.stroke;
                 (!stroke.is_finite()).then_some(("the stroke [m]", stroke))
             });
         match bad {

@@ -19,7 +19,7 @@ use nalgebra::DVector;
 use rapier3d::prelude::*;
 
 use super::dispatch::{TrueContact, TrueContacts};
-use crate::plant::Relief;
+use crate::plant::{Relief, Touch};
 use crate::workpiece::{ContactSurface, SurfaceContact, TriangleMesh};
 
 /// Distance ahead of touching at which a contact is offered to the slide [m].
@@ -34,19 +34,6 @@ pub struct ToolBall {
     pub radius: f64,
     /// Centre in the last link's frame [m].
     pub centre_in_link: DVec3,
-}
-
-/// A place where the ball touches the part, or is about to.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Touch {
-    /// Unit normal out of the part, in the world.
-    pub normal: DVec3,
-    /// Depth of the ball in the part; negative when apart [m].
-    pub penetration: f64,
-    /// Rate at which it goes deeper with the slide held [m/s].
-    pub rate: f64,
-    /// Share of the slide's motion that goes into the part [1].
-    pub share: f64,
 }
 
 /// Contact force over a step.
@@ -138,6 +125,7 @@ impl PartContact {
                 penetration: -above * normal.dot(contact.normal),
                 rate: -normal.dot(velocity) + relief.rate * normal.dot(contact.normal),
                 share: -normal.dot(axis),
+                damped: true,
             }
         }));
     }

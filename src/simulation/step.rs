@@ -11,25 +11,24 @@ use glam::DVec3;
 use glamx::DPose3;
 
 use self::saturation::Saturation;
-use super::contact::Touch;
 use super::cutting::Cutting;
 use super::error::SimulationError;
 use super::sample::{FrameLog, SampleLog};
-use super::slide::{self, SlideCarrier, SlideStep};
+use super::slide::{self, SlideStep};
 use super::world::{World, WorldDescription};
 use crate::arm::chain::MAX_JOINTS;
 use crate::arm::dynamics::{inverse_dynamics, mass_matrix};
 use crate::arm::kinematics::point_force_torques;
 use crate::cell::Cell;
 use crate::collision::ClearanceWatch;
-use crate::control::command_lag::CommandLag;
 use crate::control::force::{ForceController, ForceObservation};
 use crate::control::law::{DriveLimit, JointLaw};
 use crate::control::servo::{AxisCommand, Servo};
 use crate::control::transmission::Motor;
-use crate::device::{DeviceState, PistonMotion, PressureMap};
+use crate::device::{PistonMotion, PressureMap};
 use crate::path::{Phase, Reference};
-use crate::plant::{ForceTerms, Moment, Port, RunningSensors, StepContact};
+use crate::physics::command_lag::CommandLag;
+use crate::plant::{Moment, PistonLoad, RunningDevice, RunningSensors, Touch};
 use crate::removal::EdgeState;
 use crate::sensing::noise::{Noise, Stream};
 use crate::sensing::{Readings, SensorChain};
@@ -58,7 +57,7 @@ pub struct StepTimes {
 pub struct Simulation<'a> {
     cell: &'a Cell,
     world: World,
-    device: DeviceState,
+    device: RunningDevice<'a>,
     servo: Servo,
     /// Response of each axis's drive to its command, where the drives lag.
     lags: Vec<CommandLag>,
@@ -84,8 +83,6 @@ pub struct Simulation<'a> {
     touches: Vec<Touch>,
     /// Mean forces of the step on them.
     pressed: Vec<(DVec3, f64)>,
-    /// Air that has come in [kg], and how fast it did over the last step [kg/s].
-    entered: (f64, f64),
     /// Acceleration that gravity, the arm and friction gave the slide over the last step [m/s2].
     carried: f64,
     steps: usize,
@@ -126,17 +123,18 @@ impl<'a> Simulation<'a> {
             // The stop carries what will later press on the edge.
             parameters.full_stroke + desired.max(0.0) / parameters.end_stop.stiffness
         };
-        let device = cell.device.at_rest(stroke, set_pressure);
+        let motion = PistonMotion { stroke, speed: 0.0 };
+        let at_rest = (motion, cell.device.at_rest(stroke, set_pressure));
+        let device = RunningDevice::new(&cell.plant, &cell.device, at_rest);
         let mut positions = cell.plan.start();
         for (position, offset) in positions.iter_mut().zip(cell.plant.cell.encoder_offset) {
             *position -= offset;
         }
         let bandwidth = cell.plant.cell.servo_bandwidth;
         let lag = |start: &f64| CommandLag::at_rest(bandwidth, *start);
-        let lags = if bandwidth.is_finite() {
-            positions.iter().map(lag).collect()
-        } else {
-            Vec::new()
+        let lags = match bandwidth.is_finite() {
+            true => positions.iter().map(lag).collect(),
+            false => Vec::new(),
         };
         positions.push(stroke);
         let count = positions.len();
@@ -166,12 +164,11 @@ impl<'a> Simulation<'a> {
             sensors,
             readings: Readings {
                 stroke,
-                regulator_pressure: device.regulator.outlet,
+                regulator_pressure: device.state.regulator.outlet,
                 ..Readings::default()
             },
             touches: Vec::new(),
             pressed: Vec::new(),
-            entered: (0.0, 0.0),
             carried: gravity,
             device,
             steps: 0,
@@ -339,106 +336,43 @@ impl<'a> Simulation<'a> {
         self.sensors.command(self.answer, step)
     }
 
-    /// Stroke and speed of the slide.
-    fn motion(&self) -> PistonMotion {
-        let slide = self.slide();
-        PistonMotion {
-            stroke: self.world.positions()[slide],
-            speed: self.world.velocities()[slide],
-        }
-    }
-
-    /// Loads on the slide from now on, at a time [s].
-    fn carrier(&self, time: f64) -> SlideCarrier<'_> {
+    /// Loads on the slide from now on, at a time [s], with the moment that its terms are of. Where the surface stands no one knows but where the tool touches it.
+    fn load<'b>(&'b self, time: f64, touches: &'b [Touch]) -> (PistonLoad<'b>, Option<Moment>) {
         let mass = self.cell.device.parameters().moving_mass;
-        let contact = StepContact::plain(&self.cell.plant.contact);
-        SlideCarrier {
-            contact,
-            touches: &self.touches,
-            start: time,
-            stroke: self.motion().stroke,
-            weight: mass * self.carried,
-            rate: contact.rate(mass),
-            beyond: 0.0,
-            terms: ForceTerms::default(),
-            peak: Some(&self.peak),
-        }
-    }
-
-    /// The same with what else the cell's description has there, over a step [s].
-    fn with_terms<'b>(&'b self, mut carrier: SlideCarrier<'b>, step: f64) -> SlideCarrier<'b> {
-        let plant = &self.cell.plant;
-        if plant.has_terms() {
-            let moment = self.moment(&carrier);
-            carrier.beyond = plant.term(Port::Surface, &moment.ahead(0.5 * step));
-            carrier.contact.added_stiffness = plant.term(Port::ContactStiffness, &moment);
-            carrier.rate = (carrier.contact).rate(self.cell.device.parameters().moving_mass);
-            carrier.terms = ForceTerms::over(plant, &moment);
-        }
-        carrier
-    }
-
-    /// Pressure that the description's terms add to the regulator's outlet now [Pa].
-    fn added_outlet(&self, carrier: &SlideCarrier<'_>) -> f64 {
-        let plant = &self.cell.plant;
-        match plant.acts_at(Port::OutletPressure) {
-            true => plant.term(Port::OutletPressure, &self.moment(carrier)),
-            false => 0.0,
-        }
-    }
-
-    /// The variables of now. Where the surface stands no one knows but where the tool touches it.
-    fn moment(&self, carrier: &SlideCarrier<'_>) -> Moment {
-        let motion = self.motion();
-        let forces = self.touches.iter();
-        Moment {
-            time: carrier.start,
-            stroke: motion.stroke,
-            speed: motion.speed,
-            pressures: self.cell.device.pressures(&self.device, motion.stroke),
-            mass_flow: self.entered.1,
-            set_pressure: self.answer,
-            surface: f64::NAN,
-            contact_force: forces
-                .map(|touch| carrier.normal_force(touch, 0.0, motion))
-                .sum(),
-        }
+        let mut load = PistonLoad::new(&self.cell.plant.contact, mass, touches, time);
+        load.stroke.0[0] = self.device.motion.stroke;
+        load.axial.0[0] = mass * self.carried;
+        let moment = (self.device).meet_terms(&mut load, self.answer, f64::NAN);
+        (load, moment)
     }
 
     /// Device and contact over the step; a clamped slide stays where it is.
     fn advance_slide(&mut self, set_pressure: f64, start: f64, dt: f64) -> SlideStep {
         let cell = self.cell;
-        let motion = self.motion();
         let substeps = cell.scenario.simulation.substeps;
         let mut pressed = std::mem::take(&mut self.pressed);
         let mut device = self.device.clone();
-        let carrier = self.with_terms(self.carrier(start), dt);
-        if cell.plant.has_terms() {
-            device.disturbance = cell.plant.disturbance(&self.moment(&carrier), dt);
-        }
+        let (mut load, moment) = self.load(start, &self.touches);
+        load.peak = Some(&self.peak);
+        device.face_terms(&mut load, moment.as_ref(), dt);
         let step = if cell.scenario.device.locked {
-            cell.device
-                .advance(&mut device, set_pressure, motion, dt, substeps);
-            let load = slide::mean_load(&carrier, motion, dt, &mut pressed);
+            let motion = device.motion;
+            (cell.device).advance(&mut device.state, set_pressure, motion, dt, substeps);
             SlideStep {
                 motion,
                 device: self.slide_force,
-                load,
+                load: slide::mean_load(&load, motion, dt, &mut pressed),
             }
         } else {
-            let driven = (set_pressure, motion.speed);
-            let cut = (dt, substeps);
             slide::advance(
-                &cell.device,
                 &mut device,
-                &carrier,
-                driven,
-                cut,
+                &load,
+                set_pressure,
+                (dt, substeps),
                 &mut pressed,
             )
         };
-        let entered = device.air.entered;
-        self.entered = (entered, (entered - self.entered.0) / dt);
+        device.note_flow(dt);
         self.device = device;
         self.pressed = pressed;
         step
@@ -446,13 +380,18 @@ impl<'a> Simulation<'a> {
 
     /// Arm and slide over the step.
     fn move_bodies(&mut self, slide: &SlideStep, dt: f64) {
-        let speed = self.motion().speed;
+        let slide_axis = self.slide();
+        let speed = self.world.velocities()[slide_axis];
         let locked = self.cell.scenario.device.locked;
         let led = if locked { None } else { Some(slide.motion) };
         self.world.step(&self.pressed, led);
         let mass = self.cell.device.parameters().moving_mass;
-        let gained = (self.motion().speed - speed) / dt;
-        self.slide_force = self.world.applied(self.slide()).0;
+        self.device.motion = PistonMotion {
+            stroke: self.world.positions()[slide_axis],
+            speed: self.world.velocities()[slide_axis],
+        };
+        let gained = (self.device.motion.speed - speed) / dt;
+        self.slide_force = self.world.applied(slide_axis).0;
         self.carried = gained - (self.slide_force - slide.load) / mass;
     }
 

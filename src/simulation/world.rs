@@ -15,12 +15,12 @@ use glam::DVec3;
 use glamx::DPose3;
 use rapier3d::prelude::*;
 
-use super::contact::{ContactReading, PartContact, ToolBall, Touch};
+use super::contact::{ContactReading, PartContact, ToolBall};
 use crate::arm::chain::{JointKind, KinematicChain};
 use crate::cell::Cell;
 use crate::control::law::{DriveLimit, JointLaw};
 use crate::device::PistonMotion;
-use crate::plant::Relief;
+use crate::plant::{Relief, Touch};
 use crate::workpiece::TriangleMesh;
 
 /// Stiffness of the spring that carries a constant force [N/m or N m/rad]: too soft to act as a spring.

@@ -89,7 +89,7 @@ fn run(
         let time = step as f64 * 1e-3;
         state.valve = held(trajectory.valve, time).unwrap_or(ValvePosition::Extend);
         let set = held(trajectory.commands, time).unwrap_or(0.0);
-        device.advance_carried(&mut state, &mut motion, set, &outside, 1e-3, substeps);
+        device.advance_loaded::<_, true>(&mut state, &mut motion, set, &outside, 1e-3, substeps);
         look(&device, &state, motion);
     }
 }
@@ -147,7 +147,7 @@ struct Gaps {
     turned_over: f64,
 }
 
-/// The accounts of the ledger: enthalpy, heat, and the works on piston, atmosphere, seals, stops, cushions, of the axial load and of the carrier.
+/// The accounts of the ledger: enthalpy, heat, and the works on piston, atmosphere, seals, stops, cushions, of the axial load and of the load from outside.
 fn accounts(state: &DeviceState) -> [f64; 9] {
     let ledger = &state.ledger;
     [
@@ -159,7 +159,7 @@ fn accounts(state: &DeviceState) -> [f64; 9] {
         ledger.stop_work,
         ledger.cushion_work,
         ledger.axial_work,
-        ledger.carrier_work,
+        ledger.load_work,
     ]
 }
 
@@ -186,12 +186,12 @@ fn energy_gaps(trajectory: &Trajectory, parameters: DeviceParameters, substeps: 
                 stop,
                 cushion,
                 axial,
-                carrier,
+                load,
             ] = now;
             let kinetic = 0.5 * device.parameters().moving_mass * motion.speed * motion.speed;
             let of_air = energy - first - (enthalpy + heat - chamber);
             let taken = atmosphere + seal + stop + cushion;
-            let of_piston = kinetic - (chamber + axial + carrier - taken);
+            let of_piston = kinetic - (chamber + axial + load - taken);
             air = air.max(of_air.abs());
             piston = piston.max(of_piston.abs());
             whole = whole.max((of_air + of_piston).abs());
@@ -427,12 +427,12 @@ fn a_foretold_piston_keeps_the_same_books() {
             stop,
             cushion,
             axial,
-            carrier,
+            load,
         ] = accounts(&state);
         assert!(cushion > 1e-3 && axial.abs() > 1e-3);
         assert!(seal > 1.0 && stop.abs() > 1e-3 && chamber.abs() > 1.0 && atmosphere.abs() > 1e-3);
         let of_air = device.internal_energy(&state) - first - (enthalpy + heat - chamber);
-        let of_piston = chamber + axial + carrier - atmosphere - seal - stop - cushion;
+        let of_piston = chamber + axial + load - atmosphere - seal - stop - cushion;
         println!("{gas_process:?}: {turned_over:.0} J turned over");
         reached(
             "air of a predicted piston",
@@ -442,7 +442,7 @@ fn a_foretold_piston_keeps_the_same_books() {
         reached("a predicted piston", of_piston.abs() / turned_over, 1e-12);
         reached(
             "work of the foreteller against force times way",
-            (carrier - given).abs() / turned_over,
+            (load - given).abs() / turned_over,
             1e-12,
         );
     }

@@ -1,6 +1,6 @@
 //! Devices, carriers and the printed equations that the other files share.
 
-use idc_cell::device::{Carrier, Device, DeviceParameters, DeviceState, PistonMotion};
+use idc_cell::device::{Device, DeviceParameters, DeviceState, Load, PistonMotion};
 use idc_cell::physics::gas::Gas;
 use idc_cell::physics::gas_process::GasProcess;
 use idc_cell::physics::push_only::PushOnly;
@@ -138,9 +138,7 @@ impl Outside {
     }
 }
 
-impl Carrier for Outside {
-    const MOVES: bool = true;
-
+impl Load for Outside {
     fn force(&self, _: f64, motion: PistonMotion, touching: bool) -> f64 {
         let load = match self.load {
             Some((position, law)) if touching => law.linear(motion.stroke - position, motion.speed),

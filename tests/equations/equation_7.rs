@@ -106,7 +106,7 @@ fn eq_6_for_each_chamber_integrated_here_is_the_device() {
     let mut motion = still(0.0);
     let mut samples = vec![[ATMOSPHERE, ATMOSPHERE, 0.0, 0.0]];
     for _ in 0..3000 {
-        device.advance_carried(&mut state, &mut motion, SET, &Outside::NOTHING, 1e-3, 4);
+        device.advance_loaded::<_, true>(&mut state, &mut motion, SET, &Outside::NOTHING, 1e-3, 4);
         let [p1, p2] = device.pressures(&state, motion.stroke);
         samples.push([p1, p2, motion.stroke, motion.speed]);
     }

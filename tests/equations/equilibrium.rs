@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use idc_cell::device::{Carrier, Device, DeviceParameters, PistonMotion};
+use idc_cell::device::{Device, DeviceParameters, Load, PistonMotion};
 use idc_cell::physics::gas::Gas;
 use idc_cell::physics::gas_process::GasProcess;
 use idc_cell::physics::hose::Hose;
@@ -134,9 +134,7 @@ struct Counting {
     asked: Cell<usize>,
 }
 
-impl Carrier for Counting {
-    const MOVES: bool = true;
-
+impl Load for Counting {
     fn force(&self, time: f64, motion: PistonMotion, touching: bool) -> f64 {
         self.asked.set(self.asked.get() + 1);
         self.outside.force(time, motion, touching)
@@ -159,7 +157,7 @@ fn a_tool_at_rest_on_its_load_stays_and_costs_no_more_than_its_substeps() {
         ("0.3 cm3 and 5 mm2", nervous(), 200.0),
     ] {
         let device = Device::new(parameters);
-        let carrier = Counting {
+        let load = Counting {
             outside: Outside::load_cell(0.04),
             asked: Cell::new(0),
         };
@@ -168,9 +166,9 @@ fn a_tool_at_rest_on_its_load_stays_and_costs_no_more_than_its_substeps() {
         let mut flows = Vec::new();
         for ms in 0..5000 {
             if ms == 3000 {
-                carrier.asked.set(0);
+                load.asked.set(0);
             }
-            device.advance_carried(&mut state, &mut motion, SET, &carrier, 1e-3, 1);
+            device.advance_loaded::<_, true>(&mut state, &mut motion, SET, &load, 1e-3, 1);
             if ms >= 3000 {
                 let last = strokes.last().map_or(motion.stroke, |&(stroke, _)| stroke);
                 strokes.push((motion.stroke, motion.stroke - last));
@@ -178,7 +176,7 @@ fn a_tool_at_rest_on_its_load_stays_and_costs_no_more_than_its_substeps() {
                 flows.push(outlet - device.pressures(&state, motion.stroke)[0]);
             }
         }
-        let substeps = carrier.asked.get() as f64 / 4.0 / 2000.0;
+        let substeps = load.asked.get() as f64 / 4.0 / 2000.0;
         let wander = strokes.iter().map(|s| s.1.abs()).fold(0.0, f64::max);
         println!(
             "{name}: {substeps:.2} sub-steps a millisecond at rest, stroke moves {wander:.1e} m in one"

@@ -18,7 +18,7 @@ fn check(parameters: DeviceParameters) {
             true => ValvePosition::Extend,
             false => ValvePosition::Retract,
         };
-        device.advance_carried(&mut state, &mut motion, 4e5, &Outside::NOTHING, 1e-3, 2);
+        device.advance_loaded::<_, true>(&mut state, &mut motion, 4e5, &Outside::NOTHING, 1e-3, 2);
         assert!(
             motion.stroke.abs() < 0.06,
             "{ms} ms: stroke {} m",
@@ -104,7 +104,14 @@ fn a_light_piston_on_small_volumes_swings_as_its_air_springs_say() {
         let mut motion = PistonMotion { stroke, speed };
         let mut largest = 0.0f64;
         for ms in 1..=10 {
-            device.advance_carried(&mut state, &mut motion, 0.0, &Outside::NOTHING, 1e-3, 1);
+            device.advance_loaded::<_, true>(
+                &mut state,
+                &mut motion,
+                0.0,
+                &Outside::NOTHING,
+                1e-3,
+                1,
+            );
             let expected = speed / frequency * (frequency * f64::from(ms) * 1e-3).sin();
             largest = largest.max((motion.stroke - stroke - expected).abs());
         }

@@ -27,7 +27,7 @@ fn errors_of_a_swing(process: GasProcess, exponent: f64) -> [f64; 3] {
     let mut errors = [0.0f64; 3];
     let (mut lowest, mut turned) = (0.025f64, 0.0f64);
     for _ in 0..1000 {
-        device.advance_carried(&mut state, &mut motion, 0.0, &Outside::NOTHING, 1e-3, 1);
+        device.advance_loaded::<_, true>(&mut state, &mut motion, 0.0, &Outside::NOTHING, 1e-3, 1);
         lowest = lowest.min(motion.stroke);
         let now = volumes(device.parameters(), motion.stroke);
         let (pressures, temperatures) = (
@@ -129,7 +129,7 @@ fn natural_frequency(process: GasProcess, first: f64) -> f64 {
     motion.speed = 1e-3;
     let (mut crossings, mut before) = (Vec::new(), motion);
     for ms in 1..=4000 {
-        device.advance_carried(&mut state, &mut motion, 0.0, &Outside::NOTHING, 1e-3, 1);
+        device.advance_loaded::<_, true>(&mut state, &mut motion, 0.0, &Outside::NOTHING, 1e-3, 1);
         let (a, b) = (before.stroke - 0.02, motion.stroke - 0.02);
         if a < 0.0 && b >= 0.0 {
             // Cubic through both ends and their speeds, by Newton's method.

@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use idc_cell::device::{Carrier, Device, DeviceParameters, PistonMotion};
+use idc_cell::device::{Device, DeviceParameters, Load, PistonMotion};
 use idc_cell::physics::gas::Gas;
 use idc_cell::physics::gas_process::GasProcess;
 use idc_cell::physics::hose::Hose;
@@ -19,15 +19,13 @@ fn with_tube(length: f64, diameter: f64) -> DeviceParameters {
     }
 }
 
-/// A carrier that counts how often it is asked for its force: six times a sub-step of a device with a line.
+/// A load that counts how often it is asked for its force: six times a sub-step of a device with a line.
 struct Counting {
     outside: Outside,
     asked: Cell<usize>,
 }
 
-impl Carrier for Counting {
-    const MOVES: bool = true;
-
+impl Load for Counting {
     fn force(&self, time: f64, motion: PistonMotion, touching: bool) -> f64 {
         self.asked.set(self.asked.get() + 1);
         self.outside.force(time, motion, touching)
@@ -46,7 +44,7 @@ impl Carrier for Counting {
 /// sub-steps that it took for each.
 fn trajectory(parameters: &DeviceParameters, substeps: usize) -> (Vec<[f64; 3]>, f64) {
     let device = Device::new(parameters.clone());
-    let carrier = Counting {
+    let load = Counting {
         outside: Outside::load_cell(0.04),
         asked: Cell::new(0),
     };
@@ -58,13 +56,13 @@ fn trajectory(parameters: &DeviceParameters, substeps: usize) -> (Vec<[f64; 3]>,
             600..1000 => ValvePosition::Retract,
             _ => ValvePosition::Extend,
         };
-        device.advance_carried(&mut state, &mut motion, 4e5, &carrier, 1e-3, substeps);
+        device.advance_loaded::<_, true>(&mut state, &mut motion, 4e5, &load, 1e-3, substeps);
         let [one, two] = device.pressures(&state, motion.stroke);
         rows.push([one / 6e5, two / 6e5, motion.stroke / 0.05]);
         let gap = state.air.held() - first - (state.air.entered - state.air.left);
         assert!(gap.abs() < 1e-11 * first, "{ms} ms: {gap:e} kg");
     }
-    let asked = carrier.asked.get() as f64;
+    let asked = load.asked.get() as f64;
     (rows, asked / 6.0 / 1400.0)
 }
 

@@ -18,7 +18,7 @@ fn rest(
     let mut state = device.at_rest(start.stroke, 0.0);
     let mut motion = start;
     for _ in 0..ms {
-        device.advance_carried(&mut state, &mut motion, set, outside, 1e-3, 1);
+        device.advance_loaded::<_, true>(&mut state, &mut motion, set, outside, 1e-3, 1);
     }
     motion
 }

@@ -38,7 +38,7 @@ fn seals_slide_steadily_at_coulomb_plus_viscous_friction() {
     let mut motion = still(0.02);
     // Time constant M/b = 80 ms.
     for _ in 0..3000 {
-        device.advance_carried(&mut state, &mut motion, 0.0, &outside, 1e-3, 1);
+        device.advance_loaded::<_, true>(&mut state, &mut motion, 0.0, &outside, 1e-3, 1);
     }
     reached(
         "sliding speed (F - F_c) / b",
@@ -55,7 +55,7 @@ fn seals_slide_steadily_at_coulomb_plus_viscous_friction() {
     let stops_after = 4.0 / 50.0 * (start * 50.0 / 10.0 + 1.0f64).ln();
     let mut largest = 0.0f64;
     for ms in 1..=(0.9 * stops_after * 1e3) as usize {
-        device.advance_carried(&mut state, &mut motion, 0.0, &coast, 1e-3, 1);
+        device.advance_loaded::<_, true>(&mut state, &mut motion, 0.0, &coast, 1e-3, 1);
         let expected = (start + 0.2) * (-50.0 / 4.0 * ms as f64 * 1e-3).exp() - 0.2;
         largest = largest.max((motion.speed - expected).abs() / start);
     }
@@ -71,7 +71,7 @@ fn pulled(seals: SealFriction, level: f64, growth: f64) -> (f64, PistonMotion) {
     for step in 0..steps + 1000 {
         let share = ((step as f64 + 0.5) / steps as f64).min(1.0);
         let outside = Outside::force(level * share + rod);
-        device.advance_carried(&mut state, &mut motion, 0.0, &outside, 1e-3, 1);
+        device.advance_loaded::<_, true>(&mut state, &mut motion, 0.0, &outside, 1e-3, 1);
         if step + 1 == steps {
             bent = motion.stroke - 0.02;
         }
@@ -146,7 +146,7 @@ fn a_tap_lasts_half_a_period_and_bounces_in_closed_form() {
         let deepest = tapped(law, speed, 8.1e-3) - 0.021;
         let mut largest = 0.0f64;
         for ms in 1..=60 {
-            device.advance_carried(&mut state, &mut motion, 0.0, &outside, 1e-3, 1);
+            device.advance_loaded::<_, true>(&mut state, &mut motion, 0.0, &outside, 1e-3, 1);
             let since = f64::from(ms) * 1e-3 - 0.001 / speed;
             let expected = match since > 0.0 {
                 true => tapped(law, speed, since),

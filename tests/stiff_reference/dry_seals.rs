@@ -9,7 +9,7 @@
 use differential_equations::ivp::IVP;
 use differential_equations::methods::ImplicitRungeKutta;
 use differential_equations::ode::ODE;
-use idc_cell::device::{Carrier, Device, DeviceParameters, PistonMotion};
+use idc_cell::device::{Device, DeviceParameters, Load, PistonMotion};
 use idc_cell::physics::seal_friction::SealFriction;
 use idc_cell::physics::valve::ValvePosition;
 
@@ -50,9 +50,7 @@ impl ODE<f64, [f64; 5]> for Rubbing<'_> {
 /// Nothing but the device on its piston.
 struct Free;
 
-impl Carrier for Free {
-    const MOVES: bool = true;
-
+impl Load for Free {
     fn force(&self, _: f64, _: PistonMotion, _: bool) -> f64 {
         0.0
     }
@@ -135,7 +133,7 @@ fn ours(parameters: &DeviceParameters, substeps: usize) -> Trajectory {
         if index as f64 * STEP >= REVERSES - 1e-9 {
             state.valve = ValvePosition::Retract;
         }
-        device.advance_carried(&mut state, &mut motion, SET, &Free, STEP, substeps);
+        device.advance_loaded::<_, true>(&mut state, &mut motion, SET, &Free, STEP, substeps);
         let [p1, p2] = device.pressures(&state, motion.stroke);
         let seals = &parameters.seal_friction;
         [

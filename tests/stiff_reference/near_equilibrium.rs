@@ -3,7 +3,7 @@
 
 use std::cell::Cell;
 
-use idc_cell::device::{Carrier, Device, DeviceParameters, PistonMotion};
+use idc_cell::device::{Device, DeviceParameters, Load, PistonMotion};
 use idc_cell::physics::push_only::PushOnly;
 
 use super::usual;
@@ -77,9 +77,7 @@ struct Counting {
     asked: Cell<usize>,
 }
 
-impl Carrier for Counting {
-    const MOVES: bool = true;
-
+impl Load for Counting {
     fn force(&self, _: f64, motion: PistonMotion, touching: bool) -> f64 {
         self.asked.set(self.asked.get() + 1);
         let push = -LOAD.linear(motion.stroke - POSITION, motion.speed);
@@ -110,7 +108,7 @@ fn a_tool_that_presses_costs_the_same_few_substeps_at_every_step_of_the_loop() {
                 load.asked.set(0);
                 let steps = ((to - from) / dt).round();
                 for _ in 0..steps as usize {
-                    device.advance_carried(state, motion, SET, &load, dt, 1);
+                    device.advance_loaded::<_, true>(state, motion, SET, &load, dt, 1);
                 }
                 load.asked.get() as f64 / 4.0 / ((to - from) * 1e3)
             };

@@ -4,7 +4,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::{ForceController, ForceObservation};
-use crate::device::{Carrier, Device, DeviceParameters, DeviceState, PistonMotion};
+use crate::device::{Device, DeviceParameters, DeviceState, Load, PistonMotion};
 use crate::physics::gas::Gas;
 use crate::physics::gas_process::GasProcess;
 use crate::physics::push_only::PushOnly;
@@ -79,21 +79,19 @@ impl Surface {
 }
 
 /// Loads on the piston during a period that began at `time`.
-struct Load {
+struct SurfaceLoad {
     surface: Surface,
     time: f64,
 }
 
-impl Load {
+impl SurfaceLoad {
     fn penetration(&self, time: f64, motion: PistonMotion) -> (f64, f64) {
         let (position, speed) = self.surface.motion(self.time + time);
         (motion.stroke - position, motion.speed - speed)
     }
 }
 
-impl Carrier for Load {
-    const MOVES: bool = true;
-
+impl Load for SurfaceLoad {
     fn force(&self, time: f64, motion: PistonMotion, touching: bool) -> f64 {
         let (penetration, rate) = self.penetration(time, motion);
         if touching {
@@ -241,17 +239,17 @@ impl Bench {
         let pieces = (2e3 * self.period).ceil() as i32;
         let dt = self.period / f64::from(pieces);
         let before = self.motion.speed;
-        let pressed = |load: &Load, time: f64, motion: PistonMotion| {
+        let pressed = |load: &SurfaceLoad, time: f64, motion: PistonMotion| {
             -load.force(time, motion, load.touches(time, motion))
         };
         let mut sum = 0.0;
         for i in 0..pieces {
-            let load = Load {
+            let load = SurfaceLoad {
                 surface: self.surface,
                 time: self.steps as f64 * self.period + f64::from(i) * dt,
             };
             sum += 0.5 * pressed(&load, 0.0, self.motion);
-            self.device.advance_carried_unaudited(
+            self.device.advance_loaded::<_, false>(
                 &mut self.state,
                 &mut self.motion,
                 set_pressure,

@@ -7,11 +7,10 @@ use super::{FRAME_INTERVAL, SIGNALS_OF_TURNING, Simulation};
 use crate::arm::chain::MAX_JOINTS;
 use crate::device::PistonMotion;
 use crate::path::Reference;
-use crate::plant::SensorReadings;
+use crate::plant::{Moment, PistonLoad, Port, SensorReadings};
 use crate::recording::schema::JointSignal;
 use crate::sensing::Truth;
 use crate::simulation::error::SimulationError;
-use crate::simulation::slide::SlideCarrier;
 
 impl Simulation<'_> {
     /// Positions, references, speeds, drive torques and encoder readings of the axes.
@@ -30,10 +29,15 @@ impl Simulation<'_> {
     }
 
     /// Reads the sensors.
-    fn read_sensors(&mut self, time: f64, there: &SensorReadings, acceleration: f64) {
+    fn read_sensors(
+        &mut self,
+        time: f64,
+        there: &SensorReadings,
+        acceleration: f64,
+        moment: Option<Moment>,
+    ) {
         let mut read = self.errors.read(time, there, acceleration);
-        if self.cell.plant.has_terms() {
-            let moment = self.moment(&self.carrier(time));
+        if let Some(moment) = moment {
             read.add(self.cell.plant.reading_terms(&moment));
         }
         self.readings = self.sensors.measure(
@@ -51,14 +55,14 @@ impl Simulation<'_> {
     }
 
     /// Sum of the contact's normal forces [N], as a vector [N], and along the stroke [N].
-    fn pressing(&self, carrier: &SlideCarrier<'_>, motion: PistonMotion) -> (f64, DVec3, f64) {
+    fn pressing(load: &PistonLoad<'_>, motion: PistonMotion) -> (f64, DVec3, f64) {
         let none = (0.0, DVec3::ZERO, 0.0);
-        (self.touches.iter()).fold(none, |(sum, vector, load), touch| {
-            let force = carrier.normal_force(touch, 0.0, motion);
+        (load.touches().iter()).fold(none, |(sum, vector, along), touch| {
+            let force = load.normal_force(touch, 0.0, motion);
             (
                 sum + force,
                 vector + touch.normal * force,
-                load + touch.share * force,
+                along + touch.share * force,
             )
         })
     }
@@ -70,29 +74,29 @@ impl Simulation<'_> {
     ) -> Result<(), SimulationError> {
         let (cell, n) = (self.cell, self.slide());
         let time = self.steps as f64 * cell.scenario.simulation.step;
-        let motion = self.motion();
+        let motion = self.device.motion;
         let stroke = motion.stroke;
-        let carrier = self.with_terms(self.carrier(time), 0.0);
-        let further = carrier.terms.force(time, motion);
-        let added_outlet = self.added_outlet(&carrier);
-        let (normal_force, normal, load) = self.pressing(&carrier, motion);
+        let (load, moment) = self.load(time, &self.touches);
+        let further = load.term_force(0.0, motion);
+        let added_outlet = moment.map_or(0.0, |now| cell.plant.term(Port::OutletPressure, &now));
+        let (normal_force, normal, load) = Self::pressing(&load, motion);
         let cut = self.cutting.as_ref().map(|cutting| cutting.reading().force);
         let friction = self.world.contact().friction + cut.unwrap_or_default();
         let force_on_part = -(normal + friction);
         let normal = normal.normalize_or_zero();
         let gas = &cell.scenario.device.parameters.gas;
-        let pressures = cell.device.pressures(&self.device, stroke);
+        let pressures = cell.device.pressures(&self.device.state, stroke);
         let mass = cell.device.parameters().moving_mass;
         if !cell.scenario.device.locked {
-            self.slide_force = cell.device.piston_force(&self.device, motion) + further;
+            self.slide_force = self.device.force() + further;
         }
         let acceleration = (self.slide_force - load) / mass + self.carried;
         let there = SensorReadings {
             force: force_on_part.dot(reference.axis),
             stroke,
-            regulator_pressure: self.device.regulator.outlet + added_outlet,
+            regulator_pressure: self.device.state.regulator.outlet + added_outlet,
         };
-        self.read_sensors(time, &there, acceleration);
+        self.read_sensors(time, &there, acceleration, moment);
         let off = self.world.tool_centre() - reference.centre;
         let axial = off.dot(reference.axis);
         let along = off.dot(reference.tangent);
@@ -113,13 +117,13 @@ impl Simulation<'_> {
             motion.speed,
             pressures[0],
             pressures[1],
-            gas.atmosphere + self.device.regulator.outlet,
+            gas.atmosphere + self.device.state.regulator.outlet,
             gas.atmosphere + set_pressure,
-            self.device.air.masses[0],
-            self.device.air.masses[1],
-            self.device.air.line_mass(),
-            self.device.air.entered,
-            self.device.air.left,
+            self.device.state.air.masses[0],
+            self.device.state.air.masses[1],
+            self.device.state.air.line_mass(),
+            self.device.state.air.entered,
+            self.device.state.air.left,
             off.dot(aside),
             -along,
             axial - (stroke - cell.scenario.process.working_stroke),

@@ -1,4 +1,4 @@
-//! Who carries the piston.
+//! What acts on the piston from outside the device.
 
 /// Largest sub-step times the fastest rate of stops and load at which a swing is followed closely, its phase to 6e-7 rad a sub-step [rad].
 pub const FINE_SWING: f64 = 0.15;
@@ -12,24 +12,21 @@ pub struct PistonMotion {
     pub speed: f64,
 }
 
-/// Carrier: the moving mass beside the piston, and the forces from outside the device. Times are since the start of the step that is being integrated [s].
-pub trait Carrier {
+/// Load: the forces on the piston from outside the device. Times are since the start of the step that is being integrated [s].
+pub trait Load {
     /// Whether the piston moves under the force. If not, it keeps its speed.
-    const MOVES: bool;
+    const MOVES: bool = true;
 
-    /// Force along extension from outside the device [N]: weight, load, hand. `touching` holds the contact as it was found by `touches`
+    /// Force along extension from outside the device [N]: weight, contact, hand. `touching` holds the contact as it was found by `touches`
     /// for the whole of a sub-step, so that the law is smooth in it.
     fn force(&self, time: f64, motion: PistonMotion, touching: bool) -> f64;
 
-    /// Whether the load's share of the force is wanted by itself.
-    const LOADED: bool = false;
-
-    /// Share of `force` [N] that the load takes, positive against extension.
-    fn load(&self, _time: f64, _motion: PistonMotion, _touching: bool) -> f64 {
+    /// Share of `force` [N] that the contact takes, positive against extension.
+    fn contact(&self, _time: f64, _motion: PistonMotion, _touching: bool) -> f64 {
         0.0
     }
 
-    /// Whether the load pushes on the piston.
+    /// Whether the contact pushes on the piston.
     fn touches(&self, time: f64, motion: PistonMotion) -> bool;
 
     /// Takes note of a sub-step that is done: its start and length [s], the motion at both ends.
@@ -52,7 +49,7 @@ pub trait Carrier {
 /// A piston that somebody else moves: at the same speed throughout.
 pub(super) struct Predicted;
 
-impl Carrier for Predicted {
+impl Load for Predicted {
     const MOVES: bool = false;
 
     fn force(&self, _: f64, _: PistonMotion, _: bool) -> f64 {

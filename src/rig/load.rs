@@ -1,0 +1,54 @@
+//! The load on the piston of a bench rig: weight, hand, and what it pushes on.
+
+use crate::plant::{ContactParameters, Cubic, PistonLoad, Touch};
+use crate::scenario::bench::{BenchScenario, LoadScenario};
+
+/// Value, first and second derivative of peak/2 (1 - cos(2 pi frequency (t - start))).
+fn swing(peak: f64, frequency: f64, start: f64, time: f64) -> [f64; 3] {
+    if time < start {
+        return [0.0; 3];
+    }
+    let rate = std::f64::consts::TAU * frequency;
+    let (sine, cosine) = (rate * (time - start)).sin_cos();
+    [
+        0.5 * peak * (1.0 - cosine),
+        0.5 * peak * rate * sine,
+        0.5 * peak * rate * rate * cosine,
+    ]
+}
+
+/// What a swing leaves of a value.
+fn less(value: f64, swing: [f64; 3]) -> Cubic {
+    Cubic([value - swing[0], -swing[1], -0.5 * swing[2], 0.0])
+}
+
+/// Load on the piston from `time` [s] on, over a step in which the motions of surface and hand are taken as parabolas.
+pub fn load_at(scenario: &BenchScenario, time: f64) -> PistonLoad<'_> {
+    /// Nothing to push on.
+    const FREE: ContactParameters = ContactParameters::linear(0.0, 0.0);
+    let mass = scenario.device.parameters.moving_mass;
+    let mut load = match &scenario.load {
+        LoadScenario::Free => {
+            let mut load = PistonLoad::new(&FREE, mass, &[], time);
+            load.stroke.0[0] = f64::INFINITY;
+            load
+        }
+        LoadScenario::Contact {
+            position,
+            contact,
+            motion,
+        } => {
+            let mut load = PistonLoad::new(contact, mass, &[Touch::AXIAL], time);
+            let moved = motion.map_or([0.0; 3], |m| {
+                swing(m.peak_to_peak, m.frequency, m.start, time)
+            });
+            load.stroke = less(*position, moved);
+            load
+        }
+    };
+    let hand = scenario.hand.map_or([0.0; 3], |hand| {
+        swing(hand.peak_force, hand.frequency, hand.start, time)
+    });
+    load.axial = less(mass * scenario.gravity_along_extension, hand);
+    load
+}
