@@ -6,7 +6,7 @@ use idc_cell::cell::{Cell, CellError};
 use idc_cell::path::{Obstacle as InTheWay, PlanError};
 use idc_cell::place::{Hindrance, PlaceGrid, best_places, tried_places};
 use idc_cell::run::run_cell;
-use idc_cell::scenario::{Obstacle, ObstacleShape, Scenario};
+use idc_cell::scenario::{Direction, Obstacle, ObstacleShape, Scenario};
 use idc_cell::simulation::SimulationError;
 
 use crate::common::{run, scenario};
@@ -164,7 +164,7 @@ fn a_run_in_which_bodies_meet_stops_and_keeps_what_was_recorded() {
 fn the_weight_of_the_tool_is_told_with_what_to_change() {
     let down = |force: f64, mass: Option<f64>| {
         let mut scenario = scenario("plate_edge_ideal");
-        scenario.process.tool_axis = Some(DVec3::NEG_Z);
+        scenario.process.tool_axis = Some(Direction(DVec3::NEG_Z));
         scenario.process.force = force;
         if let Some(mass) = mass {
             scenario.device.parameters.moving_mass = mass;
@@ -199,7 +199,7 @@ fn a_tool_axis_along_the_bisector_is_the_job_without_a_lean() {
     let plain = Cell::new(scenario("plate_edge_ideal")).unwrap();
     let axis = plain.plan.reference(0.5 * plain.plan.duration()).axis;
     let mut given = scenario("plate_edge_ideal");
-    given.process.tool_axis = Some(axis);
+    given.process.tool_axis = Some(Direction(axis));
     let given = Cell::new(given).unwrap();
     assert!((given.axial_share - 1.0).abs() < 1e-12);
     let [a, b] = [&plain, &given].map(|cell| cell.plan.reference(0.5 * cell.plan.duration()));
@@ -208,7 +208,7 @@ fn a_tool_axis_along_the_bisector_is_the_job_without_a_lean() {
     }
     // Into the part's face it is no tool axis.
     let mut aside = scenario("plate_edge_ideal");
-    aside.process.tool_axis = Some(DVec3::Z);
+    aside.process.tool_axis = Some(Direction(DVec3::Z));
     let error = refusal(aside);
     assert!(
         error.to_string().contains("from the edge's bisector"),

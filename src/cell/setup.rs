@@ -104,7 +104,9 @@ impl Setup {
         let lean = ToolAxis::Lean(process.lean);
         Stance {
             world_from_part: self.scenario.workpiece.world_from_part,
-            tool_axis: process.tool_axis.map_or(lean, ToolAxis::Direction),
+            tool_axis: process
+                .tool_axis
+                .map_or(lean, |axis| ToolAxis::Direction(axis.0)),
             roll: process.roll,
         }
     }

@@ -9,18 +9,10 @@ use crate::scenario::document::{Document, read_text};
 use crate::scenario::error::Place;
 
 use super::candidate::{Design, Outcome, scenario_key};
-use super::file::{
-    BoundKeys, DEFAULT_SEED, ObjectiveKeys, OverKeys, SCHEMA, StudyFile, VariableKeys,
-    study_sections,
-};
+use super::file::{BoundKeys, ObjectiveKeys, OverKeys, SCHEMA, StudyFile, VariableKeys};
 use super::limits::{Limit, LimitQuantity, Side};
 use super::robustness::{Scattering, scattering};
 use super::variable::{Variable, variable};
-
-/// Metric that is minimised unless the file says otherwise.
-pub(super) const DEFAULT_METRIC: &str = "coefficient_of_variation_percent";
-pub(super) const DEFAULT_EVALUATIONS: usize = 2000;
-pub(super) const DEFAULT_FRONT_POINTS: usize = 8;
 
 /// A checked study.
 #[derive(Debug, Clone, PartialEq)]
@@ -159,10 +151,10 @@ pub fn load(path: &Path) -> Result<Study, ScenarioError> {
 /// As `load`, of a text that stands, or could stand, in the file at `path`.
 pub(super) fn from_text(path: &Path, text: &str) -> Result<Study, ScenarioError> {
     let document = Document::new(path, text, SCHEMA)?;
-    let file: StudyFile = document.parse(&study_sections()).map_err(quote_dotted)?;
+    let file: StudyFile = document.read().map_err(quote_dotted)?;
     debug_assert_eq!(file.schema, SCHEMA, "others are refused by Document::new");
     let section = Section::new(&document, "study");
-    let evaluations = file.study.evaluations.unwrap_or(DEFAULT_EVALUATIONS);
+    let evaluations = file.study.evaluations;
     let variables = variables(&document, &file)?;
     let least = least_evaluations(variables.len());
     let (objective, trade_off, front_points) = objectives(&document, &file.objective, &variables)?;
@@ -174,7 +166,7 @@ pub(super) fn from_text(path: &Path, text: &str) -> Result<Study, ScenarioError>
         path: path.to_owned(),
         title: section.text("title", &file.study.title)?,
         scenarios: scenarios(&section, &file.study.scenarios)?,
-        seed: file.study.seed.unwrap_or(DEFAULT_SEED),
+        seed: file.study.seed,
         evaluations: section.count("evaluations", evaluations, least..=1_000_000)?,
         places: places(&document, &objective, trade_off.as_ref(), &limits),
         variables,
@@ -245,32 +237,27 @@ fn objectives(
     variables: &[Variable],
 ) -> Result<Objectives, ScenarioError> {
     let section = Section::new(document, "objective");
-    let over = |over: Option<OverKeys>| match over {
-        None | Some(OverKeys::Mean) => Over::Mean,
-        Some(OverKeys::Worst) => Over::Worst,
+    let over = |over: OverKeys| match over {
+        OverKeys::Mean => Over::Mean,
+        OverKeys::Worst => Over::Worst,
     };
+    let given = |key: &str| section.given().any(|given| given == key);
     let objective = Objective {
-        metric: section.text(
-            "minimise",
-            keys.minimise.as_deref().unwrap_or(DEFAULT_METRIC),
-        )?,
+        metric: section.text("minimise", &keys.minimise)?,
         over: over(keys.minimise_over),
     };
     let Some(trade_off) = &keys.trade_off else {
-        let needless = [
-            ("trade_off_over", keys.trade_off_over.is_some()),
-            ("front_points", keys.front_points.is_some()),
-        ];
-        return match needless.into_iter().find(|(_, given)| *given) {
-            Some((key, _)) => {
+        let needless = ["trade_off_over", "front_points"];
+        return match needless.into_iter().find(|key| given(key)) {
+            Some(key) => {
                 Err(section.misplaced(key, "there is no `trade_off` that it belongs to".to_owned()))
             }
-            None => Ok((objective, None, DEFAULT_FRONT_POINTS)),
+            None => Ok((objective, None, keys.front_points)),
         };
     };
     let name = section.text("trade_off", trade_off)?;
     let index = variables.iter().position(|variable| variable.key == name);
-    if index.is_some() && keys.trade_off_over.is_some() {
+    if index.is_some() && given("trade_off_over") {
         let reason = format!("{name} is a variable, the same in every scenario");
         return Err(section.misplaced("trade_off_over", reason));
     }
@@ -287,9 +274,7 @@ fn objectives(
         },
         TradeOff::Variable,
     );
-    let points = keys.front_points.unwrap_or(DEFAULT_FRONT_POINTS);
-    let points = section.count("front_points", points, 3..=50)?;
-    Ok((objective, Some(trade_off), points))
+    Ok((objective, Some(trade_off), keys.front_points))
 }
 
 fn limits(document: &Document<'_>, file: &StudyFile) -> Result<Vec<Limit>, ScenarioError> {

@@ -2,9 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::bench_file::{
-    BenchFile, BenchKeys, BenchSimulationKeys, CommandKeys, HandKeys, LoadKeys, LoadKind, ValveKeys,
-};
+pub use super::bench_file::HandScenario;
+use super::bench_file::{BenchFile, BenchKeys, CommandKeys, LoadKeys, LoadKind, ValveKeys};
 use super::check::Section;
 use super::controller::{ControllerScenario, ForceLaw, check_force, controller};
 use super::document::Document;
@@ -14,15 +13,12 @@ use super::estimator::{EstimatorBase, estimator as set_up_estimator};
 use super::load::expectations;
 use super::rig_device::{BenchDevice, bench_device, usual_contact};
 use super::rig_file::blank;
-use super::sections::{bench_sections, keys as keys_of};
 use super::sensing::{check_set_pressure, sensing};
 use super::{DeviceScenario, Expectation};
 use crate::effects::{Effect, PresentEffect, Subsystem, every};
 use crate::estimation::ContactForceEstimator;
 use crate::physics::valve::ValvePosition;
-use crate::plant::{
-    ContactLaw, ContactParameters, Latent, OwnLaw, PlantParameters, SensorErrors, registry,
-};
+use crate::plant::{ContactLaw, ContactParameters, Latent, OwnLaw, PlantParameters, SensorErrors};
 use crate::sensing::{CommandChain, SensingParameters};
 
 /// A bench and what is done on it.
@@ -94,17 +90,6 @@ pub enum LoadScenario {
 pub struct SurfaceMotion {
     /// Travel from end to end [m].
     pub peak_to_peak: f64,
-    /// Frequency [Hz].
-    pub frequency: f64,
-    /// When it starts [s].
-    pub start: f64,
-}
-
-/// A hand that pushes against extension: peak_force/2 (1 - cos(2 pi frequency (t - start))).
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct HandScenario {
-    /// Largest force [N].
-    pub peak_force: f64,
     /// Frequency [Hz].
     pub frequency: f64,
     /// When it starts [s].
@@ -196,35 +181,12 @@ fn effects_of_bench(
     Ok(effects)
 }
 
-/// Duration [s], gravity along extension [m/s2] and stroke at the start [m], for a device with its rig file's gravity.
-fn conditions(
-    section: &Section<'_>,
-    keys: &BenchKeys,
-    device: &DeviceScenario,
-    gravity: f64,
-) -> Result<(f64, f64, f64), ScenarioError> {
-    let duration = section.number("duration_s", keys.duration_s, 0.01..=3600.0)?;
-    let key = "start_stroke_mm";
-    let start_stroke = section.number(key, keys.start_stroke_mm.unwrap_or(0.0), 0.0..=500.0)?;
-    let full_stroke = device.parameters.full_stroke;
-    if start_stroke > full_stroke {
-        let expected = format!("at most the device's stroke_mm, {} mm", full_stroke * 1e3);
-        return Err(section.refuse_number(key, start_stroke * 1e3, expected));
-    }
-    let gravity = section.known(
-        &registry::GRAVITY,
-        "gravity_along_extension_m_per_s2",
-        keys.gravity_along_extension_m_per_s2.unwrap_or(gravity),
-    )?;
-    Ok((duration, gravity, start_stroke))
-}
-
 /// Reads a bench scenario from a document that says that it is one.
 pub(super) fn from_document(
     path: &Path,
     document: &Document<'_>,
 ) -> Result<BenchScenario, ScenarioError> {
-    let file: BenchFile = document.parse(&bench_sections())?;
+    let file: BenchFile = document.read()?;
     let section = |table: &str| Section::new(document, table);
     let BenchDevice {
         device,
@@ -234,33 +196,32 @@ pub(super) fn from_document(
         latent,
         own,
     } = bench_device(&section("device"), &file.device)?;
-    let bench = section("bench");
-    let (duration, gravity_along_extension, start_stroke) =
-        conditions(&bench, &file.bench, &device, gravity_along_extension)?;
+    let BenchKeys {
+        duration,
+        gravity,
+        start_stroke,
+    } = file.bench;
+    let gravity_along_extension = gravity.unwrap_or(gravity_along_extension);
+    let full_stroke = device.parameters.full_stroke;
+    within_stroke(
+        &section("bench"),
+        "start_stroke_mm",
+        [start_stroke, full_stroke],
+    )?;
     if device.locked {
         let reason = "a bench has no locked device".to_owned();
         return Err(section("device").misplaced("locked", reason));
     }
-    let (step, substeps, seed) = simulation(&section("simulation"), &file.simulation)?;
+    let step = file.simulation.step;
     let sensing = sensing(document, &file.sensing, step)?;
     let parameters = &device.parameters;
     let check_force = |section: &Section<'_>, force: f64| {
         let gravity = gravity_along_extension;
         check_force(section, force, gravity, parameters, &sensing.command)
     };
-    let command = commands(
-        document,
-        &file.command,
-        duration,
-        &sensing.command,
-        check_force,
-    )?;
-    let load = load(
-        &section("load"),
-        &file.load,
-        contact,
-        device.parameters.full_stroke,
-    )?;
+    let chain = &sensing.command;
+    let command = commands(document, &file.command, duration, chain, check_force)?;
+    let load = load(&section("load"), &file.load, contact, full_stroke)?;
     let controller = controller(document, &file.controller, parameters, &sensing, step)?;
     check_controller(&section("controller"), &controller, &command, &load)?;
     let base = EstimatorBase {
@@ -272,7 +233,6 @@ pub(super) fn from_document(
     };
     let estimator = file.estimator.as_ref();
     let estimator = estimator.map(|keys| set_up_estimator(document, keys, &base));
-    let hand = (file.hand.as_ref()).map(|keys| hand(&section("hand"), keys));
     let mut scenario = BenchScenario {
         path: path.to_owned(),
         title: section("").text("title", &file.title)?,
@@ -283,12 +243,12 @@ pub(super) fn from_document(
         effects: Vec::new(),
         latent,
         own,
-        hand: hand.transpose()?,
+        hand: file.hand,
         command,
         valve: valve(document, &file.valve, duration)?,
         step,
-        substeps,
-        seed,
+        substeps: file.simulation.substeps,
+        seed: file.simulation.seed,
         estimator: estimator.transpose()?,
         sensing,
         sensor_errors,
@@ -300,16 +260,17 @@ pub(super) fn from_document(
     Ok(scenario)
 }
 
-#[rustfmt::skip] // A table: one key a line.
-fn simulation(
+/// Refuses a place [m] beyond the device's stroke [m].
+fn within_stroke(
     section: &Section<'_>,
-    keys: &BenchSimulationKeys,
-) -> Result<(f64, usize, u64), ScenarioError> {
-    Ok((
-        section.number("step_ms", keys.step_ms.unwrap_or(1.0), 0.01..=20.0)?,
-        section.count("device_substeps", keys.device_substeps.unwrap_or(2), 1..=1000)?,
-        keys.seed.unwrap_or(1),
-    ))
+    key: &str,
+    [place, full_stroke]: [f64; 2],
+) -> Result<(), ScenarioError> {
+    let expected = format!("at most the device's stroke_mm, {} mm", full_stroke * 1e3);
+    match place > full_stroke {
+        true => Err(section.refuse_si(key, place, expected)),
+        false => Ok(()),
+    }
 }
 
 /// Load that the tool meets; `contact` is that of the rig, of which the keys given change a part.
@@ -319,62 +280,26 @@ fn load(
     mut contact: ContactParameters,
     full_stroke: f64,
 ) -> Result<LoadScenario, ScenarioError> {
-    let (allowed, reason): (&[&str], _) = match keys.kind {
-        LoadKind::Free => (&[], "nothing is met when kind = \"free\""),
-        LoadKind::LoadCell => (
-            &["position_mm", "stiffness_n_per_m", "damping_n_s_per_m"],
-            "a load cell stands still; kind = \"surface\" moves",
-        ),
-        LoadKind::Surface => (keys_of::<LoadKeys>(), ""),
-    };
-    let is_other = |key: &&str| *key != "kind" && !allowed.contains(key);
-    if let Some(key) = section.given().find(is_other) {
-        return Err(section.misplaced(key, reason.to_owned()));
-    }
+    section.of_kind::<LoadKeys>(None)?;
     if keys.kind == LoadKind::Free {
         return Ok(LoadScenario::Free);
     }
-    let required = |key: &str, value: Option<f64>| {
-        value.ok_or_else(|| section.missing(key, "it to be given for this kind of load"))
-    };
-    let given = required("position_mm", keys.position_mm)?;
-    let position = section.number("position_mm", given, 0.0..=500.0)?;
-    if position > full_stroke {
-        let expected = format!("at most the device's stroke_mm, {} mm", full_stroke * 1e3);
-        return Err(section.refuse_number("position_mm", given, expected));
-    }
-    if let Some(stiffness) = keys.stiffness_n_per_m {
-        let stiffness =
-            section.known(&registry::CONTACT_STIFFNESS, "stiffness_n_per_m", stiffness)?;
+    // What a kind needs is there by now.
+    let needed = |value: Option<f64>| value.unwrap_or_default();
+    let position = needed(keys.position);
+    within_stroke(section, "position_mm", [position, full_stroke])?;
+    if let Some(stiffness) = keys.stiffness {
         contact.law = ContactLaw::Linear { stiffness };
     }
-    if let Some(damping) = keys.damping_n_s_per_m {
-        contact.damping =
-            section.known(&registry::CONTACT_DAMPING, "damping_n_s_per_m", damping)?;
-    }
-    let motion = if keys.kind == LoadKind::Surface {
-        let peak_to_peak = required("peak_to_peak_mm", keys.peak_to_peak_mm)?;
-        let frequency = required("frequency_hz", keys.frequency_hz)?;
-        Some(SurfaceMotion {
-            peak_to_peak: section.number("peak_to_peak_mm", peak_to_peak, 0.0..=500.0)?,
-            frequency: section.number("frequency_hz", frequency, 0.001..=100.0)?,
-            start: section.number("start_s", keys.start_s.unwrap_or(0.0), 0.0..=3600.0)?,
-        })
-    } else {
-        None
-    };
+    contact.damping = keys.damping.unwrap_or(contact.damping);
     Ok(LoadScenario::Contact {
         position,
         contact,
-        motion,
-    })
-}
-
-fn hand(section: &Section<'_>, keys: &HandKeys) -> Result<HandScenario, ScenarioError> {
-    Ok(HandScenario {
-        peak_force: section.number("peak_force_n", keys.peak_force_n, 0.0..=5000.0)?,
-        frequency: section.number("frequency_hz", keys.frequency_hz, 0.001..=100.0)?,
-        start: section.number("start_s", keys.start_s.unwrap_or(0.0), 0.0..=3600.0)?,
+        motion: (keys.kind == LoadKind::Surface).then(|| SurfaceMotion {
+            peak_to_peak: needed(keys.peak_to_peak),
+            frequency: needed(keys.frequency),
+            start: keys.start,
+        }),
     })
 }
 
@@ -407,22 +332,19 @@ fn commands(
     chain: &CommandChain,
     check_force: impl Fn(&Section<'_>, f64) -> Result<(), ScenarioError>,
 ) -> Result<CommandScenario, ScenarioError> {
-    let times = in_order(document, "command", keys.iter().map(|k| k.at_s), duration)?;
-    let by_force = keys.first().is_some_and(|first| first.force_n.is_some());
+    let times = in_order(document, "command", keys.iter().map(|k| k.at), duration)?;
+    let by_force = keys.first().is_some_and(|first| first.force.is_some());
     let mut steps = Vec::with_capacity(keys.len());
     for (index, (keys, at)) in keys.iter().zip(times).enumerate() {
         let section = Section::new(document, format!("command[{index}]"));
-        let value = match (by_force, keys.set_pressure_bar_gauge, keys.force_n) {
+        let value = match (by_force, keys.set_pressure, keys.force) {
             (false, Some(pressure), None) => {
-                let key = "set_pressure_bar_gauge";
-                let wanted = section.number(key, pressure, 0.0..=16.0)?;
-                check_set_pressure(&section, key, wanted, chain)?;
-                wanted
+                check_set_pressure(&section, "set_pressure_bar_gauge", pressure, chain)?;
+                pressure
             }
             (true, None, Some(force)) => {
-                let wanted = section.number("force_n", force, 0.0..=5000.0)?;
-                check_force(&section, wanted)?;
-                wanted
+                check_force(&section, force)?;
+                force
             }
             (_, Some(_), Some(_)) => {
                 let reason = "a command gives a set pressure or a force".to_owned();
@@ -475,9 +397,9 @@ fn valve(
     keys: &[ValveKeys],
     duration: f64,
 ) -> Result<Vec<(f64, ValvePosition)>, ScenarioError> {
-    let times = in_order(document, "valve", keys.iter().map(|k| k.at_s), duration)?;
+    let times = in_order(document, "valve", keys.iter().map(|k| k.at), duration)?;
     Ok(times
         .into_iter()
-        .zip(keys.iter().map(|keys| keys.position))
+        .zip(keys.iter().map(|keys| keys.position.0))
         .collect())
 }

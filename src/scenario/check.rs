@@ -8,6 +8,7 @@ use glamx::DPose3;
 
 use super::document::Document;
 use super::error::ScenarioError;
+use super::keys::{Key, Table};
 use super::suggestion::join;
 use super::units::{Unit, look_alike};
 use crate::plant::Number;
@@ -50,51 +51,16 @@ impl<'a> Section<'a> {
         value: f64,
         range: RangeInclusive<f64>,
     ) -> Result<f64, ScenarioError> {
-        self.number_of(Unit::of_key(key), key, value, range)
-    }
-
-    fn number_of(
-        &self,
-        unit: Unit,
-        key: &str,
-        value: f64,
-        range: RangeInclusive<f64>,
-    ) -> Result<f64, ScenarioError> {
-        if range.contains(&value) {
-            return Ok(unit.to_si(value));
+        let unit = Unit::of_key(key);
+        match range.contains(&value) {
+            true => Ok(unit.to_si(value)),
+            false => Err(self.refuse(key, unit.show(value), unit.show_range(range))),
         }
-        let expected = if range.end().is_finite() {
-            format!("{} to {}", range.start(), unit.show(*range.end()))
-        } else {
-            format!("at least {}", unit.show(*range.start()))
-        };
-        Err(self.refuse(key, unit.show(value), expected))
     }
 
     /// A number of the description within its range, in SI.
     pub fn known(&self, number: &Number, key: &str, value: f64) -> Result<f64, ScenarioError> {
         self.number(key, value, Unit::of_key(key).range(number.range))
-    }
-
-    /// As `known`, or another value [SI] if the file gives none.
-    pub fn known_or(
-        &self,
-        number: &Number,
-        key: &str,
-        given: Option<f64>,
-        default: f64,
-    ) -> Result<f64, ScenarioError> {
-        given.map_or(Ok(default), |value| self.known(number, key, value))
-    }
-
-    /// As `known`, or its default if the file gives none.
-    pub fn known_or_default(
-        &self,
-        number: &Number,
-        key: &str,
-        given: Option<f64>,
-    ) -> Result<f64, ScenarioError> {
-        self.known_or(number, key, given, number.default)
     }
 
     /// As `number`, or the default [SI] if the file gives none.
@@ -120,66 +86,6 @@ impl<'a> Section<'a> {
         }
         let expected = format!("{} to {}", range.start(), range.end());
         Err(self.refuse(key, value.to_string(), expected))
-    }
-
-    /// Numbers that each lie within a range, in SI.
-    pub fn numbers(
-        &self,
-        key: &str,
-        values: &[f64],
-        range: RangeInclusive<f64>,
-    ) -> Result<Vec<f64>, ScenarioError> {
-        let unit = Unit::of_key(key);
-        let element = |(index, value): (usize, &f64)| {
-            self.number_of(unit, &format!("{key}[{index}]"), *value, range.clone())
-        };
-        values.iter().enumerate().map(element).collect()
-    }
-
-    /// Several of a number of the description, each within its range, in SI.
-    pub fn known_numbers(
-        &self,
-        number: &Number,
-        key: &str,
-        values: &[f64],
-    ) -> Result<Vec<f64>, ScenarioError> {
-        self.numbers(key, values, Unit::of_key(key).range(number.range))
-    }
-
-    /// Three numbers, x, y and z, or the default if there are none.
-    pub fn vector(
-        &self,
-        key: &str,
-        values: Option<&[f64]>,
-        default: DVec3,
-        range: RangeInclusive<f64>,
-    ) -> Result<DVec3, ScenarioError> {
-        let Some(values) = values else {
-            return Ok(default);
-        };
-        match self.numbers(key, values, range)?[..] {
-            [x, y, z] => Ok(DVec3::new(x, y, z)),
-            _ => {
-                let found = format!("a list of {}", values.len());
-                Err(self.refuse(key, found, "a list of 3".to_owned()))
-            }
-        }
-    }
-
-    /// A pose from its position and its rotation: roll, pitch, yaw about fixed axes x, y, z, as in URDF.
-    pub fn pose(
-        &self,
-        (position_key, position): (&str, Option<&[f64]>),
-        (rotation_key, rotation): (&str, Option<&[f64]>),
-    ) -> Result<DPose3, ScenarioError> {
-        let translation = self.vector(position_key, position, DVec3::ZERO, -1e4..=1e4)?;
-        let angles = self.vector(rotation_key, rotation, DVec3::ZERO, -360.0..=360.0)?;
-        Ok(DPose3 {
-            rotation: DQuat::from_rotation_z(angles.z)
-                * DQuat::from_rotation_y(angles.y)
-                * DQuat::from_rotation_x(angles.x),
-            translation,
-        })
     }
 
     /// A text that is not empty.
@@ -229,10 +135,52 @@ impl<'a> Section<'a> {
         self.refuse(key, Unit::of_key(key).show(value), expected)
     }
 
+    /// Refuses a number [SI], in its key's unit.
+    pub fn refuse_si(&self, key: &str, value: f64, expected: String) -> ScenarioError {
+        self.refuse_number(key, Unit::of_key(key).of_si(value), expected)
+    }
+
+    /// Refuses keys that the table's kind does not have, and asks for those that it needs. The kind is what its first key says, or else what `other` says it is.
+    pub fn of_kind<T: Table>(&self, other: Option<&str>) -> Result<(), ScenarioError> {
+        let keys = T::keys();
+        let selector = &keys[0];
+        let written = self.document.text_at(&self.dotted(selector.name));
+        let origin = match (written, other) {
+            (None, Some(_)) => ", the preset's,",
+            _ => "",
+        };
+        let kind = written.or(other).or(selector.default_text());
+        let kind = kind.unwrap_or_default();
+        let named = format!("{} = \"{kind}\"", selector.name);
+        let own = || keys[1..].iter().filter(|key| key.is_of(kind));
+        let is_other = |given: &&str| {
+            let mut others = keys.iter().filter(|key| !key.is_of(kind));
+            others.any(|key| key.name == *given)
+        };
+        if let Some(given) = self.given().find(is_other) {
+            let names: Vec<&str> = own().map(|key| key.name).collect();
+            let others = match names.is_empty() {
+                true => "no other key".to_owned(),
+                false => names.join(", "),
+            };
+            return Err(self.misplaced(given, format!("{named}{origin} has {others}")));
+        }
+        let is_given = |key: &Key| self.given().any(|given| given == key.name);
+        match own().find(|key| key.is_required() && !is_given(key)) {
+            Some(key) => Err(self.missing(key.name, &format!("it to be given with {named}"))),
+            None => Ok(()),
+        }
+    }
+
     /// Refuses that a key is absent.
     pub fn missing(&self, key: &str, expected: &str) -> ScenarioError {
+        let place = self.document.place(&self.table);
+        let (above, _) = self.table.rsplit_once('.').unwrap_or_default();
         ScenarioError::MissingKey {
-            place: self.document.place(&self.table),
+            place: match place.position {
+                Some(_) => place,
+                None => self.document.place(above),
+            },
             key: join(&self.table, key),
             expected: expected.to_owned(),
         }
@@ -255,6 +203,16 @@ impl<'a> Section<'a> {
             key,
             reason,
         }
+    }
+}
+
+/// A pose from its position and its rotation: roll, pitch, yaw about fixed axes x, y, z, as in URDF.
+pub(super) fn pose(position: DVec3, rotation: DVec3) -> DPose3 {
+    DPose3 {
+        rotation: DQuat::from_rotation_z(rotation.z)
+            * DQuat::from_rotation_y(rotation.y)
+            * DQuat::from_rotation_x(rotation.x),
+        translation: position,
     }
 }
 

@@ -1,15 +1,10 @@
 //! `[collision]` and `[[obstacle]]` of a scenario file.
 
-use glam::DVec3;
-
-use super::check::Section;
+use super::check::{Section, pose};
 use super::document::Document;
 use super::error::ScenarioError;
 use super::file::{CollisionKeys, ObstacleKeys};
 use super::{CollisionScenario, Obstacle, ObstacleShape};
-
-/// Clearance asked for where the file says nothing [mm]: twice the path error of a usual robot, and what its shapes leave out of hoses.
-const MARGIN: f64 = 5.0;
 
 /// What must not meet.
 pub(super) fn collision(
@@ -17,9 +12,6 @@ pub(super) fn collision(
     keys: &CollisionKeys,
     obstacles: &[ObstacleKeys],
 ) -> Result<CollisionScenario, ScenarioError> {
-    let section = Section::new(document, "collision");
-    let margin = keys.margin_mm.unwrap_or(MARGIN);
-    let floor = keys.floor_height_mm;
     let mut found: Vec<Obstacle> = Vec::with_capacity(obstacles.len());
     for (index, keys) in obstacles.iter().enumerate() {
         let section = Section::new(document, format!("obstacle[{index}]"));
@@ -31,10 +23,8 @@ pub(super) fn collision(
         found.push(obstacle);
     }
     Ok(CollisionScenario {
-        margin: section.number("margin_mm", margin, 0.0..=200.0)?,
-        floor_height: floor
-            .map(|height| section.number("floor_height_mm", height, -100_000.0..=100_000.0))
-            .transpose()?,
+        margin: keys.margin,
+        floor_height: keys.floor_height,
         allowed_pairs: keys.allowed_pairs.clone().unwrap_or_default(),
         obstacles: found,
     })
@@ -45,7 +35,7 @@ fn obstacle(
     keys: &ObstacleKeys,
     index: usize,
 ) -> Result<Obstacle, ScenarioError> {
-    let shape = match (&keys.box_mm, &keys.mesh) {
+    let shape = match (&keys.box_size, &keys.mesh) {
         (Some(_), Some(_)) => {
             let reason =
                 format!("`obstacle[{index}].box_mm` is given too, expected one of the two");
@@ -59,12 +49,7 @@ fn obstacle(
                 let reason = "a box has no mesh; its size is in millimetres".to_owned();
                 return Err(section.misplaced("mesh_unit", reason));
             }
-            ObstacleShape::Box(section.vector(
-                "box_mm",
-                Some(size),
-                DVec3::ONE,
-                0.01..=100_000.0,
-            )?)
+            ObstacleShape::Box(*size)
         }
         (None, Some(mesh)) => ObstacleShape::Mesh {
             path: section.file("mesh", mesh)?,
@@ -81,9 +66,6 @@ fn obstacle(
             None => format!("obstacle {}", index + 1),
         },
         shape,
-        world_from_obstacle: section.pose(
-            ("position_mm", keys.position_mm.as_deref()),
-            ("rotation_deg", keys.rotation_deg.as_deref()),
-        )?,
+        world_from_obstacle: pose(keys.position, keys.rotation),
     })
 }

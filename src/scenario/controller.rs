@@ -3,14 +3,12 @@
 //! Values that are left out are tuned to the device where the controller is built (`crate::control::force`), for the rules stand there; so does the check that the
 //! loop is stable, which refuses through [`ControllerScenario::refuse`].
 
-use std::ops::RangeInclusive;
-
 use serde::Deserialize;
 
 use super::check::Section;
 use super::document::Document;
 use super::error::{Place, ScenarioError};
-use super::sensing::stages::only;
+use super::keys::{Plain, keys};
 use super::suggestion::join;
 use crate::device::{DeviceParameters, PressureMap};
 use crate::physics::seal_friction::SealFriction;
@@ -20,25 +18,39 @@ use crate::sensing::{CommandChain, SensingParameters};
 /// The table's name.
 const TABLE: &str = "controller";
 
-/// `[controller]`.
-#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ControllerKeys {
-    #[serde(default)]
-    pub kind: ControllerKind,
-    pub period_ms: Option<f64>,
-    pub proportional_gain: Option<f64>,
-    pub integral_gain_per_s: Option<f64>,
-    pub rate_per_s: Option<f64>,
-    pub response_time_s: Option<f64>,
-    pub observer_time_s: Option<f64>,
-    pub tracking_frequency_rad_per_s: Option<f64>,
-    pub friction_n: Option<f64>,
-    pub static_friction_n: Option<f64>,
-    pub viscous_n_s_per_m: Option<f64>,
-    pub presliding_um: Option<f64>,
-    pub friction_uncertainty: Option<f64>,
+keys! {
+    /// `[controller]`.
+    pub(super) struct ControllerKeys {
+        /// which of the keys below there are
+        kind: ControllerKind = "kind", or "open_loop";
+        /// time between two answers, held in between: whole steps, and no shorter than the sensors' sample period
+        period: Option<f64> = "period_ms" in 0.01..=100.0, shown "one sample of `[sensing]`, a step at least";
+        /// force commanded over force missing
+        proportional_gain: Option<f64> = "proportional_gain" for "proportional_integral" in 0..=1000, shown "tuned: lag over twice the delay";
+        /// integral gain on the load cell's error
+        integral_gain: Option<f64> = "integral_gain_per_s" for "proportional_integral" | "feedback_linearisation" in 0.0..=1e5, shown "tuned to lag and delay";
+        /// rate of the wanted response of the pressure
+        rate: Option<f64> = "rate_per_s" for "feedback_linearisation" in 0.1..=1e5, shown "tuned: 4 over the dead time";
+        /// time constant of the pressure's approach to what is wanted
+        response_time: Option<f64> = "response_time_s" for "disturbance_prediction" in 1e-5..=100.0, shown "tuned: half the dead time, 0.01 at least";
+        /// time constant with which the load cell's disagreement with the model is followed
+        observer_time: Option<f64> = "observer_time_s" for "disturbance_prediction" in 1e-5..=100.0, shown "tuned: twice the response time";
+        /// poles of the filter for speed and acceleration, below half the sampling frequency
+        tracking_frequency: Option<f64> = "tracking_frequency_rad_per_s" for "disturbance_prediction" in 0.1..=1e5, shown "tuned: 40";
+        /// nominal Coulomb friction
+        friction: Option<f64> = "friction_n" for "disturbance_prediction", of registry::SEAL_COULOMB, shown "the device's";
+        /// nominal breakaway force
+        static_friction: Option<f64> = "static_friction_n" for "disturbance_prediction", of registry::SEAL_STATIC, shown "the device's, `friction_n` at least";
+        /// nominal viscous friction
+        viscous: Option<f64> = "viscous_n_s_per_m" for "disturbance_prediction", of registry::SEAL_VISCOUS, shown "the device's";
+        /// nominal presliding displacement
+        presliding: Option<f64> = "presliding_um" for "disturbance_prediction", of registry::SEAL_PRESLIDING, shown "the device's";
+        /// how uncertain the nominal dry friction is, as a share of it
+        friction_uncertainty: Option<f64> = "friction_uncertainty" for "disturbance_prediction" in 0..=1, shown "tuned: 0.5";
+    }
 }
+
+impl Plain for ControllerKind {}
 
 /// Kind of controller.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
@@ -53,37 +65,6 @@ pub(super) enum ControllerKind {
     FeedbackLinearisation,
     /// Disturbances predicted and cancelled.
     DisturbancePrediction,
-}
-
-impl ControllerKind {
-    /// Its name, and the keys that it has besides `kind`.
-    fn keys(self) -> (&'static str, &'static [&'static str]) {
-        match self {
-            Self::OpenLoop => ("open_loop", &["period_ms"]),
-            Self::ProportionalIntegral => (
-                "proportional_integral",
-                &["period_ms", "proportional_gain", "integral_gain_per_s"],
-            ),
-            Self::FeedbackLinearisation => (
-                "feedback_linearisation",
-                &["period_ms", "rate_per_s", "integral_gain_per_s"],
-            ),
-            Self::DisturbancePrediction => (
-                "disturbance_prediction",
-                &[
-                    "period_ms",
-                    "response_time_s",
-                    "observer_time_s",
-                    "tracking_frequency_rad_per_s",
-                    "friction_n",
-                    "static_friction_n",
-                    "viscous_n_s_per_m",
-                    "presliding_um",
-                    "friction_uncertainty",
-                ],
-            ),
-        }
-    }
 }
 
 /// The controller of a scenario.
@@ -165,12 +146,11 @@ pub(super) fn controller(
     step: f64,
 ) -> Result<ControllerScenario, ScenarioError> {
     let section = Section::new(document, TABLE);
-    let (name, allowed) = keys.kind.keys();
-    only(&section, name, false, allowed)?;
+    section.of_kind::<ControllerKeys>(None)?;
     let place = |key: &str| (key.to_owned(), document.place(&join(TABLE, key)));
     Ok(ControllerScenario {
         law: law(&section, keys, &device.seal_friction)?,
-        period: period(&section, keys.period_ms, sensing, step)?,
+        period: period(&section, keys.period, sensing, step)?,
         places: section
             .given()
             .filter(|key| !["kind", "period_ms"].contains(key))
@@ -180,63 +160,59 @@ pub(super) fn controller(
     })
 }
 
-#[rustfmt::skip] // A table: one key a line.
-fn law(section: &Section<'_>, keys: &ControllerKeys, seals: &SealFriction) -> Result<ForceLaw, ScenarioError> {
-    let number = |key: &str, given: Option<f64>, range: RangeInclusive<f64>| {
-        given.map(|value| section.number(key, value, range)).transpose()
-    };
+fn law(
+    section: &Section<'_>,
+    keys: &ControllerKeys,
+    seals: &SealFriction,
+) -> Result<ForceLaw, ScenarioError> {
     Ok(match keys.kind {
         ControllerKind::OpenLoop => ForceLaw::OpenLoop,
         ControllerKind::ProportionalIntegral => ForceLaw::ProportionalIntegral {
-            proportional_gain: number("proportional_gain", keys.proportional_gain, 0.0..=1000.0)?,
-            integral_gain: number("integral_gain_per_s", keys.integral_gain_per_s, 0.0..=1e5)?,
+            proportional_gain: keys.proportional_gain,
+            integral_gain: keys.integral_gain,
         },
         ControllerKind::FeedbackLinearisation => ForceLaw::FeedbackLinearisation {
-            rate: number("rate_per_s", keys.rate_per_s, 0.1..=1e5)?,
-            integral_gain: number("integral_gain_per_s", keys.integral_gain_per_s, 0.0..=1e5)?,
+            rate: keys.rate,
+            integral_gain: keys.integral_gain,
         },
         ControllerKind::DisturbancePrediction => ForceLaw::DisturbancePrediction {
-            response_time: number("response_time_s", keys.response_time_s, 1e-5..=100.0)?,
-            observer_time: number("observer_time_s", keys.observer_time_s, 1e-5..=100.0)?,
-            tracking_frequency: number("tracking_frequency_rad_per_s", keys.tracking_frequency_rad_per_s, 0.1..=1e5)?,
+            response_time: keys.response_time,
+            observer_time: keys.observer_time,
+            tracking_frequency: keys.tracking_frequency,
             seals: believed_seals(section, keys, seals)?,
-            friction_uncertainty: number("friction_uncertainty", keys.friction_uncertainty, 0.0..=1.0)?,
+            friction_uncertainty: keys.friction_uncertainty,
         },
     })
 }
 
-/// The device's seals with what the file believes otherwise; none if it says nothing of them.
-#[rustfmt::skip] // A table: one key a line.
+/// The device's seals with what the file says is nominal otherwise; none if it says nothing of them.
 fn believed_seals(
     section: &Section<'_>,
     keys: &ControllerKeys,
     own: &SealFriction,
 ) -> Result<Option<SealFriction>, ScenarioError> {
     let given = [
-        keys.friction_n,
-        keys.static_friction_n,
-        keys.viscous_n_s_per_m,
-        keys.presliding_um,
+        keys.friction,
+        keys.static_friction,
+        keys.viscous,
+        keys.presliding,
     ];
     if given.iter().all(Option::is_none) {
         return Ok(None);
     }
     let [friction, static_friction, viscous, presliding] = given;
-    let known_or = |number, key, given, default| section.known_or(number, key, given, default);
-    let coulomb = known_or(&registry::SEAL_COULOMB, "friction_n", friction, own.coulomb)?;
-    let least = own.static_force.max(coulomb);
-    let key = "static_friction_n";
-    let static_force = known_or(&registry::SEAL_STATIC, key, static_friction, least)?;
+    let coulomb = friction.unwrap_or(own.coulomb);
+    let static_force = static_friction.unwrap_or(own.static_force.max(coulomb));
     if static_force < coulomb {
         let expected = format!("at least the sliding friction that is believed, {coulomb} N");
-        return Err(section.refuse_number(key, static_force, expected));
+        return Err(section.refuse_si("static_friction_n", static_force, expected));
     }
     Ok(Some(SealFriction {
         coulomb,
         static_force,
         stribeck_velocity: own.stribeck_velocity,
-        viscous: known_or(&registry::SEAL_VISCOUS, "viscous_n_s_per_m", viscous, own.viscous)?,
-        presliding_displacement: known_or(&registry::SEAL_PRESLIDING, "presliding_um", presliding, own.presliding_displacement)?,
+        viscous: viscous.unwrap_or(own.viscous),
+        presliding_displacement: presliding.unwrap_or(own.presliding_displacement),
         pressure_coefficient: own.pressure_coefficient,
     }))
 }
@@ -251,22 +227,21 @@ fn period(
     // A ratio may be a rounding off the whole number that it is.
     const ROUNDING: f64 = 1e-6;
     let sample = sensing.sample_period();
-    let Some(value) = given else {
+    let Some(period) = given else {
         return Ok(step * (sample / step - ROUNDING).ceil().max(1.0));
     };
     let key = "period_ms";
-    let period = section.number(key, value, 0.01..=100.0)?;
     let steps = period / step;
     if steps < 1.0 - ROUNDING || (steps - steps.round()).abs() > ROUNDING * steps {
         let expected = format!("whole steps of simulation.step_ms, {} ms", step * 1e3);
-        return Err(section.refuse_number(key, value, expected));
+        return Err(section.refuse_si(key, period, expected));
     }
     if period < sample * (1.0 - ROUNDING) {
         let expected = format!(
             "at least the sample period of [sensing], {} ms",
             sample * 1e3
         );
-        return Err(section.refuse_number(key, value, expected));
+        return Err(section.refuse_si(key, period, expected));
     }
     Ok(period)
 }

@@ -9,7 +9,6 @@ use super::error::ScenarioError;
 use super::file::{ModelFile, SCHEMA};
 use super::judged;
 use super::rig_file::blank;
-use super::sections::model_sections;
 use super::units::Unit;
 use crate::plant::{Number, registry};
 
@@ -34,7 +33,7 @@ pub(super) fn load_with_overrides(
 ) -> Result<DeviceScenario, ScenarioError> {
     let text = read_text(path)?;
     let document = Document::new(path, &text, SCHEMA)?;
-    let file: ModelFile = document.parse(&model_sections())?;
+    let file: ModelFile = document.read()?;
     let model = Layers {
         layers: overrides
             .into_iter()

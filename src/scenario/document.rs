@@ -7,8 +7,9 @@ use serde::Deserialize;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{Excerpt, Place, ScenarioError};
+use super::keys::{Table, names, tables};
 use super::rig_file::NUMBER_OR_TABLE;
-use super::suggestion::{Sections, advice, join};
+use super::suggestion::{Sections, advice, is_table, join, split};
 use super::units::Unit;
 
 /// A file that is valid TOML.
@@ -29,6 +30,15 @@ struct Entry {
     key: String,
     key_span: Range<usize>,
     value_span: Range<usize>,
+    /// Its value, where that is a number or a text.
+    scalar: Option<Scalar>,
+}
+
+/// A number as the file gives it, or a text.
+#[derive(Debug)]
+enum Scalar {
+    Number(f64),
+    Text(String),
 }
 
 /// Reads a file as text.
@@ -85,6 +95,43 @@ impl<'a> Document<'a> {
     /// Fills a type from the file; `sections` are the tables that the file may have.
     pub fn parse<T: Deserialize<'a>>(&self, sections: &Sections) -> Result<T, ScenarioError> {
         toml::from_str(self.text).map_err(|error| self.explain(&error, sections))
+    }
+
+    /// Fills a table of declared keys from the file, and holds its numbers to their ranges.
+    pub fn read<T: Table>(&self) -> Result<T, ScenarioError> {
+        let tables = tables::<T>();
+        let file = self.parse(&names(&tables))?;
+        for entry in &self.entries {
+            let Some(Scalar::Number(value)) = entry.scalar else {
+                continue;
+            };
+            let (table, name) = split(&entry.key);
+            let name = name.split('[').next().unwrap_or(name);
+            let keys = tables.iter().find(|(known, _)| is_table(known, &table));
+            let key = keys.and_then(|(_, keys)| keys.iter().find(|key| key.name == name));
+            let Some([low, high]) = key.and_then(|key| key.range) else {
+                continue;
+            };
+            let unit = Unit::of_key(name);
+            if !(low..=high).contains(&value) {
+                return Err(ScenarioError::Value {
+                    place: self.place(&entry.key),
+                    key: entry.key.clone(),
+                    found: unit.show(value),
+                    expected: unit.show_range(low..=high),
+                });
+            }
+        }
+        Ok(file)
+    }
+
+    /// The text that stands at a key.
+    pub fn text_at(&self, key: &str) -> Option<&str> {
+        let entry = self.entries.iter().find(|entry| entry.key == key)?;
+        match &entry.scalar {
+            Some(Scalar::Text(text)) => Some(text),
+            _ => None,
+        }
     }
 
     /// Version of its format that the file says it is of.
@@ -201,7 +248,7 @@ impl<'a> Document<'a> {
         let (_, expected) = message.rsplit_once("expected ").unwrap_or(("", message));
         ScenarioError::Value {
             place,
-            expected: expected_value(expected, &owner),
+            expected: expected_value(expected, &owner, sections),
             key: owner,
             found: excerpt(&self.text[span]),
         }
@@ -239,6 +286,12 @@ fn note_value(
         key: key.clone(),
         key_span,
         value_span: value.span(),
+        scalar: match value.get_ref() {
+            DeValue::Float(number) => as_number(number.as_str()),
+            DeValue::Integer(number) if number.radix() == 10 => as_number(number.as_str()),
+            DeValue::String(text) => Some(Scalar::Text(text.to_string())),
+            _ => None,
+        },
     });
     match value.get_ref() {
         DeValue::Table(table) => note_table(&key, table, entries),
@@ -251,9 +304,13 @@ fn note_value(
     }
 }
 
+fn as_number(digits: &str) -> Option<Scalar> {
+    digits.replace('_', "").parse().ok().map(Scalar::Number)
+}
+
 fn expected_of_missing(key: &str, field: &str, sections: &Sections) -> String {
     let unit = Unit::of_key(field);
-    if sections.iter().any(|(section, _)| *section == key) {
+    if sections.iter().any(|(section, _)| section == key) {
         format!("a table [{key}]")
     } else if unit.is_one() {
         "it to be given, it has no default".to_owned()
@@ -263,7 +320,7 @@ fn expected_of_missing(key: &str, field: &str, sections: &Sections) -> String {
 }
 
 /// Type that serde expected, in words for people.
-fn expected_value(expected: &str, key: &str) -> String {
+fn expected_value(expected: &str, key: &str, sections: &Sections) -> String {
     let number = |kind: &str| {
         let name = key.rsplit('.').next().unwrap_or(key);
         let unit = Unit::of_key(name.split('[').next().unwrap_or(name));
@@ -279,17 +336,7 @@ fn expected_value(expected: &str, key: &str) -> String {
         "u32" | "u64" | "usize" => number("a whole number, 0 or more"),
         "a boolean" => "true or false".to_owned(),
         "a string" | "path string" => "a text in quotes".to_owned(),
-        "a sequence"
-            if [
-                "arm.limit_overrides",
-                "arm.drives",
-                "command",
-                "recordings.force_ramp",
-                "flange.fit",
-                "valve",
-            ]
-            .contains(&key) =>
-        {
+        "a sequence" if sections.iter().any(|(table, _)| table == key) => {
             format!("tables [[{key}]]")
         }
         "a sequence" => number("a list of numbers"),

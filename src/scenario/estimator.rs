@@ -1,12 +1,11 @@
 //! `[estimator]` of a bench: what the estimator believes of noise and device, checked and set up.
 
-use std::ops::RangeInclusive;
-
 use serde::Deserialize;
 
 use super::check::Section;
 use super::document::Document;
 use super::error::ScenarioError;
+use super::keys::{Plain, keys};
 use super::sensing::white;
 use crate::device::DeviceParameters;
 use crate::estimation::{ContactForceEstimator, EstimatorParameters, SensorNoise, Tolerances};
@@ -27,28 +26,56 @@ pub(super) enum KnownTo {
     None,
 }
 
-/// `[estimator]`.
-#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct EstimatorKeys {
-    pub stroke_noise_mm: Option<f64>,
-    pub acceleration_noise_m_per_s2: Option<f64>,
-    pub regulator_pressure_noise_pa: Option<f64>,
-    pub moving_mass_kg: Option<f64>,
-    pub seal_coulomb_force_n: Option<f64>,
-    #[serde(default)]
-    pub tolerances: KnownTo,
-    pub moving_mass_tolerance: Option<f64>,
-    pub orifice_tolerance: Option<f64>,
-    pub dead_volume_tolerance: Option<f64>,
-    pub piston_area_tolerance: Option<f64>,
-    pub dry_friction_tolerance: Option<f64>,
-    pub viscous_friction_tolerance: Option<f64>,
-    pub presliding_displacement_tolerance: Option<f64>,
-    pub regulator_pressure_scale_tolerance: Option<f64>,
-    pub regulator_pressure_tolerance_pa: Option<f64>,
-    pub acceleration_tolerance_m_per_s2: Option<f64>,
-    pub gravity_tolerance_m_per_s2: Option<f64>,
+keys! {
+    /// `[estimator]`.
+    pub(super) struct EstimatorKeys {
+        /// nominal standard deviation of the stroke's samples; when left out, what `[sensing]` gives them, rounding to steps included, and this value if that is 0
+        stroke_noise: Option<f64> = "stroke_noise_mm" in 1e-6..=10.0, shown "0.02";
+        /// of the acceleration's, likewise
+        acceleration_noise: Option<f64> = "acceleration_noise_m_per_s2" in 1e-6..=1000.0, shown "0.25";
+        /// of the regulator pressure's, likewise
+        regulator_pressure_noise: Option<f64> = "regulator_pressure_noise_pa" in 1e-3..=1e6, shown "600";
+        /// nominal moving mass; the device's when left out
+        moving_mass_value: Option<f64> = "moving_mass_kg", of registry::MOVING_MASS;
+        /// nominal Coulomb friction, with static friction in proportion; the device's when left out
+        seal_coulomb_force: Option<f64> = "seal_coulomb_force_n", of registry::SEAL_COULOMB;
+        /// where the tolerances below start: at the defaults below, of a device whose parts were not measured one by one, or all at 0
+        tolerances: KnownTo = "tolerances", or "usual";
+        /// of the moving mass, relative
+        moving_mass: f64 = "moving_mass_tolerance" in 0.0..=0.9, from Tolerances::default().moving_mass, else tolerances.base().moving_mass;
+        /// of each orifice, relative
+        orifice: f64 = "orifice_tolerance" in 0.0..=0.9, from Tolerances::default().orifices, else tolerances.base().orifices;
+        /// of the dead volume, relative
+        dead_volume: f64 = "dead_volume_tolerance" in 0.0..=0.9, from Tolerances::default().dead_volume, else tolerances.base().dead_volume;
+        /// of the gas force by the areas, relative
+        piston_area: f64 = "piston_area_tolerance" in 0.0..=0.9, from Tolerances::default().piston_area, else tolerances.base().piston_area;
+        /// of the dry friction's level, relative
+        dry_friction: f64 = "dry_friction_tolerance" in 0.0..=0.9, from Tolerances::default().dry_friction, else tolerances.base().dry_friction;
+        /// of the viscous friction, relative
+        viscous_friction: f64 = "viscous_friction_tolerance" in 0.0..=0.9, from Tolerances::default().viscous_friction, else tolerances.base().viscous_friction;
+        /// of the presliding displacement, relative
+        presliding_displacement: f64 = "presliding_displacement_tolerance" in 0.0..=0.9, from Tolerances::default().presliding_displacement, else tolerances.base().presliding_displacement;
+        /// of the regulator pressure sensor's scale, relative
+        regulator_pressure_scale: f64 = "regulator_pressure_scale_tolerance" in 0.0..=0.9, from Tolerances::default().regulator_pressure_scale, else tolerances.base().regulator_pressure_scale;
+        /// bias of that sensor
+        regulator_pressure_bias: f64 = "regulator_pressure_tolerance_pa" in 0.0..=1e6, from Tolerances::default().regulator_pressure_bias, else tolerances.base().regulator_pressure_bias;
+        /// bias of the accelerometer, which is estimated on the way
+        acceleration_bias: f64 = "acceleration_tolerance_m_per_s2" in 0..=100, from Tolerances::default().acceleration_bias, else tolerances.base().acceleration_bias;
+        /// of the component of gravity along extension
+        gravity: f64 = "gravity_tolerance_m_per_s2" in 0..=30, from Tolerances::default().gravity_along_axis, else tolerances.base().gravity_along_axis;
+    }
+}
+
+impl Plain for KnownTo {}
+
+impl KnownTo {
+    /// Tolerances that the file does not give.
+    fn base(self) -> Tolerances {
+        match self {
+            Self::Usual => Tolerances::default(),
+            Self::None => Tolerances::NONE,
+        }
+    }
 }
 
 /// Basis of a bench's estimator.
@@ -67,14 +94,10 @@ pub(super) fn estimator(
     keys: &EstimatorKeys,
     base: &EstimatorBase<'_>,
 ) -> Result<ContactForceEstimator, ScenarioError> {
-    let section = Section::new(document, TABLE);
-    let device = believed_device(&section, keys, base.device)?;
+    let device = believed_device(keys, base.device);
     let parameters = EstimatorParameters {
         gravity_along_axis: base.gravity_along_extension,
-        ..EstimatorParameters::new(
-            noise(&section, keys, base.sensing)?,
-            tolerances(&section, keys)?,
-        )
+        ..EstimatorParameters::new(noise(keys, base.sensing), tolerances(keys))
     };
     let period = if base.sensing.sample_rate == f64::INFINITY {
         base.step
@@ -93,36 +116,24 @@ pub(super) fn estimator(
         .map_err(|error| refuse(error.to_string()))
 }
 
-/// The device as the estimator believes it to be.
-fn believed_device(
-    section: &Section<'_>,
-    keys: &EstimatorKeys,
-    device: &DeviceParameters,
-) -> Result<DeviceParameters, ScenarioError> {
+/// The device as it is nominally.
+fn believed_device(keys: &EstimatorKeys, device: &DeviceParameters) -> DeviceParameters {
     let mut believed = device.clone();
-    let known_or = |number, key, given, default| section.known_or(number, key, given, default);
-    let (mass, given) = (&registry::MOVING_MASS, keys.moving_mass_kg);
-    believed.moving_mass = known_or(mass, "moving_mass_kg", given, device.moving_mass)?;
+    believed.moving_mass = keys.moving_mass_value.unwrap_or(device.moving_mass);
     let seals = &mut believed.seal_friction;
-    let (force, given) = (&registry::SEAL_COULOMB, keys.seal_coulomb_force_n);
-    let coulomb = known_or(force, "seal_coulomb_force_n", given, seals.coulomb)?;
+    let coulomb = keys.seal_coulomb_force.unwrap_or(seals.coulomb);
     seals.static_force = if seals.coulomb > 0.0 {
         seals.static_force * coulomb / seals.coulomb
     } else {
         coulomb.max(seals.static_force)
     };
     seals.coulomb = coulomb;
-    Ok(believed)
+    believed
 }
 
 /// Standard deviations of the sensors as the file gives them, else as `[sensing]` makes them; rounding to a step is an error even within it
 /// (JCGM 100:2008, F.2.2.1).
-#[rustfmt::skip] // A table: one key a line.
-fn noise(
-    section: &Section<'_>,
-    keys: &EstimatorKeys,
-    sensing: &SensingParameters,
-) -> Result<SensorNoise, ScenarioError> {
+fn noise(keys: &EstimatorKeys, sensing: &SensingParameters) -> SensorNoise {
     let rounded = |noise: f64, step: f64| (noise * noise + step * step / 12.0).sqrt();
     let stroke = believed(&sensing.stroke, white::STROKE, |s| {
         rounded(s.noise, s.resolution)
@@ -133,12 +144,11 @@ fn noise(
     let pressure = believed(&sensing.regulator_pressure, white::PRESSURE, |s| {
         rounded(s.noise.hypot(s.adc.noise * s.step()), s.step())
     });
-    let number = |key, given, default, range| section.number_or(key, given, default, range);
-    Ok(SensorNoise {
-        stroke: number("stroke_noise_mm", keys.stroke_noise_mm, stroke, 1e-6..=10.0)?,
-        acceleration: number("acceleration_noise_m_per_s2", keys.acceleration_noise_m_per_s2, acceleration, 1e-6..=1000.0)?,
-        regulator_pressure: number("regulator_pressure_noise_pa", keys.regulator_pressure_noise_pa, pressure, 1e-3..=1e6)?,
-    })
+    SensorNoise {
+        stroke: keys.stroke_noise.unwrap_or(stroke),
+        acceleration: keys.acceleration_noise.unwrap_or(acceleration),
+        regulator_pressure: keys.regulator_pressure_noise.unwrap_or(pressure),
+    }
 }
 
 /// Standard deviation of a channel; of one without noise that of usual white noise, for no filter can do without.
@@ -151,25 +161,18 @@ fn believed<S>(channel: &Measurement<S>, usual: f64, real: impl FnOnce(&S) -> f6
     if deviation > 0.0 { deviation } else { usual }
 }
 
-#[rustfmt::skip] // A table: one key a line.
-fn tolerances(section: &Section<'_>, keys: &EstimatorKeys) -> Result<Tolerances, ScenarioError> {
-    const RELATIVE: RangeInclusive<f64> = 0.0..=0.9;
-    let base = match keys.tolerances {
-        KnownTo::Usual => Tolerances::default(),
-        KnownTo::None => Tolerances::NONE,
-    };
-    let number = |key, given, default, range| section.number_or(key, given, default, range);
-    Ok(Tolerances {
-        moving_mass: number("moving_mass_tolerance", keys.moving_mass_tolerance, base.moving_mass, RELATIVE)?,
-        orifices: number("orifice_tolerance", keys.orifice_tolerance, base.orifices, RELATIVE)?,
-        dead_volume: number("dead_volume_tolerance", keys.dead_volume_tolerance, base.dead_volume, RELATIVE)?,
-        piston_area: number("piston_area_tolerance", keys.piston_area_tolerance, base.piston_area, RELATIVE)?,
-        dry_friction: number("dry_friction_tolerance", keys.dry_friction_tolerance, base.dry_friction, RELATIVE)?,
-        viscous_friction: number("viscous_friction_tolerance", keys.viscous_friction_tolerance, base.viscous_friction, RELATIVE)?,
-        presliding_displacement: number("presliding_displacement_tolerance", keys.presliding_displacement_tolerance, base.presliding_displacement, RELATIVE)?,
-        regulator_pressure_scale: number("regulator_pressure_scale_tolerance", keys.regulator_pressure_scale_tolerance, base.regulator_pressure_scale, RELATIVE)?,
-        regulator_pressure_bias: number("regulator_pressure_tolerance_pa", keys.regulator_pressure_tolerance_pa, base.regulator_pressure_bias, 0.0..=1e6)?,
-        acceleration_bias: number("acceleration_tolerance_m_per_s2", keys.acceleration_tolerance_m_per_s2, base.acceleration_bias, 0.0..=100.0)?,
-        gravity_along_axis: number("gravity_tolerance_m_per_s2", keys.gravity_tolerance_m_per_s2, base.gravity_along_axis, 0.0..=30.0)?,
-    })
+fn tolerances(keys: &EstimatorKeys) -> Tolerances {
+    Tolerances {
+        moving_mass: keys.moving_mass,
+        orifices: keys.orifice,
+        dead_volume: keys.dead_volume,
+        piston_area: keys.piston_area,
+        dry_friction: keys.dry_friction,
+        viscous_friction: keys.viscous_friction,
+        presliding_displacement: keys.presliding_displacement,
+        regulator_pressure_scale: keys.regulator_pressure_scale,
+        regulator_pressure_bias: keys.regulator_pressure_bias,
+        acceleration_bias: keys.acceleration_bias,
+        gravity_along_axis: keys.gravity,
+    }
 }

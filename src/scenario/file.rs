@@ -1,16 +1,25 @@
-//! The TOML of a scenario file and of a device model file, key by key. Plain data: units, defaults and ranges are `load`'s business.
+//! Keys of a scenario file and of a device model file that fill no type of the scenario as they stand; those that do are declared there (`cell`).
 //!
-//! A key that holds a physical number ends with its unit. What is optional here has a default, or is left out.
+//! A key that holds a physical number ends with its unit.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
+use glam::DVec3;
 use serde::Deserialize;
 
+use super::cell::{
+    ContactScenario, DriveScenario, LimitOverride, Misplacement, ProcessScenario, ServoScenario,
+    SimulationScenario,
+};
 use super::controller::ControllerKeys;
 use super::device::ModelKeys;
+use super::effects::EffectKeys;
+use super::keys::{Plain, keys};
 use super::sensing::keys::SensingKeys;
 
+/// Thickness of a burr's root where the file says nothing [m].
+pub(super) const USUAL_ROOT: f64 = 0.15e-3;
 /// Version of both formats.
 pub(super) const SCHEMA: u32 = 2;
 
@@ -45,145 +54,286 @@ pub(super) struct KindOnly {
     pub kind: Kind,
 }
 
-/// A scenario file.
-#[derive(Debug, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ScenarioFile {
-    #[expect(dead_code, reason = "checked by Document::new")]
-    pub schema: u32,
-    #[expect(dead_code, reason = "read as `KindOnly`; here so that it is known")]
-    pub kind: Option<Kind>,
-    pub title: String,
-    pub arm: ArmKeys,
-    pub device: DeviceKeys,
-    pub workpiece: WorkpieceKeys,
-    #[serde(default)]
-    pub contact: ContactKeys,
-    pub process: ProcessKeys,
-    #[serde(default)]
-    pub pass: Vec<PassKeys>,
-    pub tool: Option<ToolKeys>,
-    pub removal: Option<RemovalKeys>,
-    #[serde(default)]
-    pub collision: CollisionKeys,
-    #[serde(default)]
-    pub obstacle: Vec<ObstacleKeys>,
-    #[serde(default)]
-    pub simulation: SimulationKeys,
-    #[serde(default)]
-    pub sensing: SensingKeys,
-    #[serde(default)]
-    pub controller: ControllerKeys,
-    #[serde(default)]
-    pub expect: BTreeMap<String, BoundKeys>,
-    #[serde(default)]
-    pub effect: super::effects::EffectKeys,
+impl Plain for Kind {}
+impl Plain for MeshUnit {}
+impl Plain for BurrKind {}
+impl Plain for ToolShapeWord {}
+impl Plain for SpindleSense {}
+impl Plain for SpindleStart {}
+impl Plain for RemovalWord {}
+
+impl Plain for EffectKeys {
+    const WORD: &'static str = "tables";
+
+    fn absent() -> Option<Self> {
+        Some(Self::default())
+    }
 }
 
-/// `[arm]`.
-#[derive(Debug, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ArmKeys {
-    pub urdf: PathBuf,
-    pub base_link: Option<String>,
-    pub flange_link: String,
-    pub flange_rotation_deg: Option<Vec<f64>>,
-    pub mass_kg: Option<f64>,
-    pub mass_spread: Option<f64>,
-    #[serde(default)]
-    pub link_masses: Vec<LinkMassKeys>,
-    #[serde(default)]
-    pub packages: BTreeMap<String, PathBuf>,
-    #[serde(default)]
-    pub limit_overrides: Vec<LimitKeys>,
-    #[serde(default)]
-    pub drives: Vec<DriveKeys>,
-    pub base_position_mm: Option<Vec<f64>>,
-    pub base_rotation_deg: Option<Vec<f64>>,
-    pub payload_kg: Option<f64>,
-    pub seed_posture_deg: Option<Vec<f64>>,
-    #[serde(default)]
-    pub servo: ServoKeys,
-}
+keys! {
+    /// A scenario file.
+    pub(super) struct ScenarioFile {
+        /// version of this format
+        schema: u32 = "schema" in 1..=2;
+        /// a bench has the tables of [Keys of a bench](#keys-of-a-bench) instead of those here
+        kind: Kind = "kind", or "cell", being "\"cell\" or \"bench\"";
+        /// name for people, also the recording's title
+        title: String = "title", being "not empty";
+        arm: ArmKeys = "arm";
+        device: DeviceKeys = "device";
+        workpiece: WorkpieceKeys = "workpiece";
+        contact: ContactScenario = "contact";
+        process: ProcessScenario = "process";
+        pass: Vec<PassKeys> = "pass";
+        tool: Option<ToolKeys> = "tool";
+        removal: Option<RemovalKeys> = "removal";
+        collision: CollisionKeys = "collision";
+        obstacle: Vec<ObstacleKeys> = "obstacle";
+        simulation: SimulationScenario = "simulation";
+        sensing: SensingKeys = "sensing";
+        controller: ControllerKeys = "controller";
+        /// bounds that the results must keep: [`[expect]`](#expect)
+        expect: BTreeMap<String, BoundKeys> = "expect", shown "none";
+        /// physics beyond what is nominal: [`[[effect]]`](#effect)
+        effect: EffectKeys = "effect", shown "none";
+    }
 
-/// `[[arm.link_masses]]`.
-#[derive(Debug, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct LinkMassKeys {
-    pub link: String,
-    pub mass_kg: f64,
-}
+    /// `[arm]`.
+    pub(super) struct ArmKeys {
+        /// the robot
+        urdf: PathBuf = "urdf";
+        /// link that carries the arm; the URDF's root link when left out
+        base_link: Option<String> = "base_link";
+        /// link on which the device is mounted, along the +z of its frame as turned by the next key
+        flange_link: String = "flange_link", being "not empty";
+        /// turn of the frame along whose +z the device is mounted, in that of the link: roll, pitch, yaw; for a flange whose z lies across the last joint's axis.
+        /// `idc new cell --urdf` finds it
+        flange_rotation: DVec3 = "flange_rotation_deg" in -360..=360, or vec![0; 3];
+        /// mass of the whole robot with its base, as on its data sheet; links to which the URDF gives no mass take the share of their volume (of a mesh that of its
+        /// convex hull) of what the other masses leave of it
+        mass: Option<f64> = "mass_kg" in 0.1..=1e5;
+        /// how far each mass estimated so may be off, either way, as a share of it; the interval of the joint torques that `idc check`, summary.json and report.html
+        /// give follows from it
+        mass_spread: f64 = "mass_spread" in 0..=1, or 0.5;
+        link_masses: Vec<LinkMassKeys> = "link_masses";
+        /// folder of each ROS package that the URDF names by `package://`, as in `packages = { ur_description = "../ur" }`
+        packages: BTreeMap<String, PathBuf> = "packages", shown "none";
+        limit_overrides: Vec<LimitOverride> = "limit_overrides";
+        drives: Vec<DriveScenario> = "drives";
+        /// base in the world
+        base_position: DVec3 = "base_position_mm" in -10_000..=10_000, or vec![0; 3];
+        /// base in the world: roll, pitch, yaw
+        base_rotation: DVec3 = "base_rotation_deg" in -360..=360, or vec![0; 3];
+        /// mass that the arm may carry on its flange: a cell whose device weighs more, housing and slide, is refused
+        payload: Option<f64> = "payload_kg" in 0.1..=3000.0, shown "that of its maker, where the robot's name in the URDF is known";
+        /// joint angles, one for each axis, near which a posture is sought first; when left out, it is found by search
+        seed_posture: Option<Vec<f64>> = "seed_posture_deg" in -360..=360;
+        servo: ServoScenario = "servo";
+    }
 
-/// `[[arm.limit_overrides]]`.
-#[derive(Debug, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct LimitKeys {
-    pub joint: String,
-    pub effort_n_m: Option<f64>,
-    pub velocity_deg_per_s: Option<f64>,
-}
+    /// `[[arm.link_masses]]`.
+    pub(super) struct LinkMassKeys {
+        /// link's name in the URDF
+        link: String = "link", being "each link once";
+        /// its mass
+        mass: f64 = "mass_kg" in 0.001..=1e5;
+    }
 
-/// `[[arm.drives]]`.
-#[derive(Debug, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct DriveKeys {
-    pub joint: String,
-    pub friction_n_m: Option<f64>,
-    pub stiffness_n_m_per_rad: Option<f64>,
-    pub damping_time_ms: Option<f64>,
-    pub backlash_deg: Option<f64>,
-}
+    /// `[device]` of a scenario.
+    pub(super) struct DeviceKeys {
+        /// device model file, [../models/device.toml](../models/device.toml)
+        model: PathBuf = "model";
+        /// the source paper's device in what the scenario leaves open: no friction of the seals, air at constant temperature, a contact of 150000 N/m and 400 N s/m
+        ideal: Option<bool> = "ideal", shown "false";
+        /// is the slide clamped at the working stroke? The contact may then be at most a tenth as stiff as the clamp
+        locked: bool = "locked", or false;
+        overrides: Option<ModelKeys> = "override";
+    }
 
-/// `[arm.servo]`.
-#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ServoKeys {
-    pub natural_frequency_hz: Option<f64>,
-    pub damping_ratio: Option<f64>,
-    pub integral_time_s: Option<f64>,
-    pub contact_feed_forward: Option<bool>,
-    pub lag_bandwidth_hz: Option<f64>,
-    pub encoder_noise_rad: Option<f64>,
-}
+    /// A device model file.
+    pub(super) struct ModelFile {
+        /// version of this format
+        schema: u32 = "schema" in 1..=2;
+        device: ModelKeys = "device";
+    }
 
-/// `[device]` of a scenario.
-#[derive(Debug, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct DeviceKeys {
-    pub model: PathBuf,
-    pub ideal: Option<bool>,
-    pub locked: Option<bool>,
-    #[serde(default, rename = "override")]
-    pub overrides: ModelKeys,
-}
+    /// `[workpiece]`.
+    pub(super) struct WorkpieceKeys {
+        /// closed mesh of the part: STL, OBJ, COLLADA, PLY or glTF; small flaws are mended, with a note that says where
+        mesh: PathBuf = "mesh";
+        /// unit of the mesh file; `m` takes COLLADA and glTF, which state theirs, as they are
+        mesh_unit: MeshUnit = "mesh_unit";
+        /// nominal place of the part's origin
+        position: DVec3 = "position_mm" in -10_000..=10_000;
+        /// part in the world: roll, pitch, yaw
+        rotation: DVec3 = "rotation_deg" in -360..=360, or vec![0; 3];
+        edge: EdgeKeys = "edge";
+        misplacement: Misplacement = "misplacement";
+        burr: Option<BurrKeys> = "burr";
+        chamfer: ChamferKeys = "chamfer";
+    }
 
-/// A device model file.
-#[derive(Debug, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ModelFile {
-    #[expect(dead_code, reason = "checked by Document::new")]
-    pub schema: u32,
-    pub device: ModelKeys,
-}
+    /// `[workpiece.edge]`.
+    pub(super) struct EdgeKeys {
+        /// smooth edge, by its number in `idc edges`
+        edge: Option<usize> = "edge", shown "one of the two";
+        /// closed loop, by its number in `idc edges`
+        closed_loop: Option<usize> = "loop", shown "one of the two";
+        /// where to begin, along the edge from its first point
+        start: f64 = "start_mm" in 0.0..=1e5, or 0.0;
+        /// where to end, more than `start_mm`; the edge's end, or once round the loop, when left out
+        end: Option<f64> = "end_mm" in 0.0..=1e5;
+        /// followed the other way round; `start_mm` and `end_mm` then count from the other end
+        reversed: bool = "reversed", or false;
+        /// by how much two faces must turn from one to the other (180 less the angle between them) for their edge to count as sharp
+        sharp_angle: f64 = "sharp_angle_deg" in 1..=170, or 30.0;
+    }
 
-/// `[workpiece]`.
-#[derive(Debug, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct WorkpieceKeys {
-    pub mesh: PathBuf,
-    pub mesh_unit: MeshUnit,
-    pub position_mm: Vec<f64>,
-    pub rotation_deg: Option<Vec<f64>>,
-    pub edge: EdgeKeys,
-    #[serde(default)]
-    pub misplacement: MisplacementKeys,
-    pub burr: Option<BurrKeys>,
-    #[serde(default)]
-    pub chamfer: ChamferKeys,
+    /// `[workpiece.burr]`: `kind` says which of the other keys there are.
+    pub(super) struct BurrKeys {
+        /// which of the keys below there are
+        kind: BurrKind = "kind";
+        /// thickness of its root, of which a turning tool takes the section; 0.05 to 0.3 is usual
+        root: f64 = "root_mm" for "constant" | "random" | "bump" | "table" in 0.001..=5.0, from USUAL_ROOT, judged "leg of the chamfer and burr that is left";
+        /// height
+        height: Option<f64> = "height_mm" for "constant" | "bump" in 0..=10;
+        /// mean height
+        mean_height: Option<f64> = "mean_height_mm" for "random" in 0.001..=10.0;
+        /// standard deviation of the height
+        standard_deviation: Option<f64> = "standard_deviation_mm" for "random" in 0..=10, shown "a third of the mean height";
+        /// distance over which the correlation of the height's logarithm falls to exp(-1/2)
+        correlation_length: Option<f64> = "correlation_length_mm" for "random" in 0.1..=1000.0;
+        /// another seed, another burr of the same kind
+        seed: u64 = "seed" for "random", or 1;
+        /// middle, from the start of the followed edge
+        position: Option<f64> = "position_mm" for "bump" in 0.0..=1e5;
+        /// from foot to foot
+        width: Option<f64> = "width_mm" for "bump" in 0.1..=1000.0;
+        /// CSV with the header `position_mm,height_mm`
+        path: Option<PathBuf> = "path" for "table";
+    }
+
+    /// `[workpiece.chamfer]`: what the edge should be like.
+    pub(super) struct ChamferKeys {
+        /// least leg of a good chamfer
+        leg_min: f64 = "leg_min_mm" in 0..=20, or 0.0;
+        /// largest leg of a good chamfer
+        leg_max: f64 = "leg_max_mm" in 0.0..=f64::INFINITY, or f64::INFINITY;
+        /// burr that may be left, which is not felt by a finger any more
+        residual_burr: f64 = "residual_burr_max_mm" in 0..=5, or 0.02, judged "share out of tolerance";
+    }
+
+    /// `[[pass]]`: one along the edge; what is not given is as in `[process]`.
+    pub(super) struct PassKeys {
+        /// desired contact force
+        force: Option<f64> = "force_n" in 0.1..=5000.0, shown "that of the process";
+        /// feed along the edge
+        feed: Option<f64> = "feed_mm_per_s" in 0.1..=1000.0, shown "that of the process";
+        /// bounds on the numbers of this pass, as those of [`[expect]`](#expect) on the run's: `expect.force_mean_n = { min = 39.0 }`
+        expect: BTreeMap<String, BoundKeys> = "expect", shown "none";
+    }
+
+    /// `[tool]`: a tool on a spindle.
+    pub(super) struct ToolKeys {
+        /// the device's ball, a cone with its flank on the edge, or a belt over a wheel
+        shape: ToolShapeWord = "shape";
+        /// without load
+        spindle_speed: f64 = "spindle_speed_rpm" in 1.0..=2e5;
+        /// seen along the spindle's axis towards the tool
+        sense: SpindleSense = "spindle_sense", or "clockwise";
+        /// before the tool touches, or as it starts to follow the edge
+        start: SpindleStart = "spindle_start", or "follow";
+        /// angle of the spindle's axis from the slide's, towards the direction of travel
+        lead: f64 = "spindle_lead_deg" in -180..=180, or 0.0;
+        /// the same towards the face on the left of the direction of travel
+        lean: f64 = "spindle_lean_deg" in -180..=180, or 0.0;
+        /// torque at which the spindle stands, its speed falling in proportion to the torque; inf for a speed that no load changes
+        stall_torque: f64 = "stall_torque_n_mm" in 0.01..=f64::INFINITY, or f64::INFINITY;
+        /// of the wheel with the belt
+        wheel_radius: Option<f64> = "wheel_radius_mm" for "belt" in 0.5..=500.0;
+        /// between opposite flanks
+        cone_angle: Option<f64> = "cone_angle_deg" for "cone" in 1..=179;
+        /// of the flank, from the tip
+        cone_length: Option<f64> = "cone_length_mm" for "cone" in 0.5..=200.0;
+        /// from the tip to the contact, along the flank
+        cone_contact: Option<f64> = "cone_contact_mm" for "cone" in 0..=200, shown "half the length";
+        /// radius at its tip
+        cone_tip_radius: f64 = "cone_tip_radius_mm" for "cone" in 0..=100, or 0.0;
+    }
+
+    /// `[removal]`: `law` says which of the other keys there are.
+    pub(super) struct RemovalKeys {
+        /// in proportion to force and speed, the same above a threshold force, or powers of them
+        law: RemovalWord = "law";
+        /// volume per work of normal force and speed
+        coefficient: Option<f64> = "coefficient_mm3_per_j" for "preston" | "threshold" in 1e-9..=1e3, judged "leg of the chamfer and burr that is left";
+        /// force below which nothing comes off; 0 when left out of *power*
+        threshold_force: Option<f64> = "threshold_force_n" for "threshold" | "power" in 0..=5000, shown "required", judged "leg of the chamfer and burr that is left";
+        /// removal rate at the reference point
+        rate: Option<f64> = "rate_mm3_per_s" for "power" in 1e-9..=1e6, judged "leg of the chamfer and burr that is left";
+        /// of the reference point, more than the threshold
+        reference_force: Option<f64> = "reference_force_n" for "power" in 0.001..=5000.0;
+        /// of the reference point
+        reference_speed: Option<f64> = "reference_speed_m_per_s" for "power" in 0.001..=500.0;
+        /// exponent of the force
+        force_exponent: Option<f64> = "force_exponent" for "power" in 0.1..=5.0;
+        /// exponent of the cutting speed
+        speed_exponent: f64 = "speed_exponent" for "power" in -5..=5, or 1.0;
+        /// contact area of the reference point
+        reference_area: f64 = "reference_area_mm2" for "power" in 1e-3..=1e4, or 1.0;
+        /// exponent of the contact area
+        area_exponent: f64 = "area_exponent" for "power" in -5..=5, or 0.0;
+        /// contact area
+        contact_area: f64 = "contact_area_mm2" for "power" in 1e-3..=1e4, else reference_area, shown "that of the reference point";
+        /// work of force and speed after which the tool takes off 1/e of what a new one does; inf for one that does not wear
+        wear_work: f64 = "wear_work_kj" in 1e-3..=f64::INFINITY, or f64::INFINITY, judged "leg of the chamfer and burr that is left";
+        /// work that the tool has done before: `tool_wear_kj` at the end of an earlier run
+        wear_at_start: f64 = "wear_at_start_kj" in 0.0..=1e6, or 0.0, judged "leg of the chamfer and burr that is left";
+        /// length of edge on which the tool touches at a time
+        contact_length: f64 = "contact_length_mm" in 0.1..=100.0, or 1.0, judged "leg of the chamfer and burr that is left";
+        /// energy that a volume takes: of an abrasive on steel 10 to 60, of a sharp burr tool on aluminium 1 to 3
+        specific_energy: f64 = "specific_energy_j_per_mm3" in 0..=1000, or 20.0, judged "spindle torque and power";
+        /// of what rubs
+        friction: f64 = "friction_coefficient" in 0..=2, or 0.3, judged "spindle torque and power";
+    }
+
+    /// `[collision]`.
+    pub(super) struct CollisionKeys {
+        /// least clearance between bodies: by default twice the path error of a usual robot, and what its shapes leave out of hoses
+        margin: f64 = "margin_mm" in 0..=200, or 5.0;
+        /// height of the floor in the world; when left out, 0 unless base, part or an obstacle stands below that, and then there is none
+        floor_height: Option<f64> = "floor_height_mm" in -1e5..=1e5;
+        /// bodies that may meet, by the names of the links, `device`, `tool`, `part`, `floor` and the obstacles, as in [["forearm", "hose"]]
+        allowed_pairs: Option<Vec<[String; 2]>> = "allowed_pairs";
+    }
+
+    /// `[[obstacle]]`.
+    pub(super) struct ObstacleKeys {
+        /// name for messages, each once; when left out, `obstacle` and its number
+        name: Option<String> = "name", being "not empty";
+        /// edge lengths of a box about its position
+        box_size: Option<DVec3> = "box_mm" in 0.01..=1e5, shown "one of box and mesh", being "each positive, at most 100000";
+        /// mesh in place of a box: STL, OBJ, COLLADA, PLY or glTF
+        mesh: Option<PathBuf> = "mesh", shown "one of box and mesh";
+        /// unit of the mesh, needed with one
+        mesh_unit: Option<MeshUnit> = "mesh_unit", shown "one of these with a mesh";
+        /// a box's middle, a mesh's origin, in the world
+        position: DVec3 = "position_mm" in -10_000..=10_000, or vec![0; 3];
+        /// roll, pitch, yaw
+        rotation: DVec3 = "rotation_deg" in -360..=360, or vec![0; 3];
+    }
+
+    /// A metric in `[expect]`.
+    pub(super) struct BoundKeys {
+        /// the least that is allowed, in the unit of its name
+        min: Option<f64> = "min";
+        /// the most that is allowed, in the unit of its name
+        max: Option<f64> = "max";
+    }
 }
 
 /// Unit of a mesh file, which itself states none.
-#[derive(Debug, Clone, Copy, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum MeshUnit {
     /// Millimetre.
@@ -205,45 +355,8 @@ impl MeshUnit {
     }
 }
 
-/// `[workpiece.edge]`.
-#[derive(Debug, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct EdgeKeys {
-    pub edge: Option<usize>,
-    #[serde(rename = "loop")]
-    pub closed_loop: Option<usize>,
-    pub start_mm: Option<f64>,
-    pub end_mm: Option<f64>,
-    pub reversed: Option<bool>,
-    pub sharp_angle_deg: Option<f64>,
-}
-
-/// `[workpiece.misplacement]`.
-#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct MisplacementKeys {
-    pub shift_mm: Option<f64>,
-    pub tilt_deg: Option<f64>,
-}
-
-/// `[workpiece.burr]`: `kind` says which of the other keys there are.
-#[derive(Debug, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct BurrKeys {
-    pub kind: BurrKind,
-    pub root_mm: Option<f64>,
-    pub height_mm: Option<f64>,
-    pub mean_height_mm: Option<f64>,
-    pub standard_deviation_mm: Option<f64>,
-    pub correlation_length_mm: Option<f64>,
-    pub seed: Option<u64>,
-    pub position_mm: Option<f64>,
-    pub width_mm: Option<f64>,
-    pub path: Option<PathBuf>,
-}
-
 /// Shape of a burr.
-#[derive(Debug, Clone, Copy, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum BurrKind {
     /// No burr.
@@ -258,70 +371,8 @@ pub(super) enum BurrKind {
     Table,
 }
 
-/// `[contact]`.
-#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ContactKeys {
-    pub stiffness_n_per_m: Option<f64>,
-    pub damping_n_s_per_m: Option<f64>,
-    pub friction_coefficient: Option<f64>,
-    pub spindle_frequency_hz: Option<f64>,
-    pub runout_um: Option<f64>,
-    pub runout_frequency_hz: Option<f64>,
-}
-
-/// `[process]`.
-#[derive(Debug, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ProcessKeys {
-    pub force_n: f64,
-    pub feed_mm_per_s: f64,
-    pub corner_feed_mm_per_s: Option<f64>,
-    pub acceleration_mm_per_s2: Option<f64>,
-    pub lateral_acceleration_mm_per_s2: Option<f64>,
-    pub jerk_mm_per_s3: Option<f64>,
-    pub working_stroke_mm: Option<f64>,
-    pub lean_deg: Option<f64>,
-    pub passes: Option<usize>,
-    pub feed_follows: Option<FeedFollowsKeys>,
-    pub tool_axis: Option<ToolAxisKeys>,
-    pub roll_deg: Option<f64>,
-    pub approach_distance_mm: Option<f64>,
-    pub approach_speed_mm_per_s: Option<f64>,
-    pub engage_speed_mm_per_s: Option<f64>,
-    pub settle_time_s: Option<f64>,
-}
-
-/// `[[pass]]`: one along the edge; what is not given is as in `[process]`.
-#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct PassKeys {
-    pub force_n: Option<f64>,
-    pub feed_mm_per_s: Option<f64>,
-    #[serde(default)]
-    pub expect: BTreeMap<String, BoundKeys>,
-}
-
-/// `[tool]`: a tool on a spindle.
-#[derive(Debug, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ToolKeys {
-    pub shape: ToolShapeWord,
-    pub spindle_speed_rpm: f64,
-    pub spindle_sense: Option<SpindleSense>,
-    pub spindle_start: Option<SpindleStart>,
-    pub spindle_lead_deg: Option<f64>,
-    pub spindle_lean_deg: Option<f64>,
-    pub stall_torque_n_mm: Option<f64>,
-    pub wheel_radius_mm: Option<f64>,
-    pub cone_angle_deg: Option<f64>,
-    pub cone_length_mm: Option<f64>,
-    pub cone_contact_mm: Option<f64>,
-    pub cone_tip_radius_mm: Option<f64>,
-}
-
 /// Shape of the part of a tool that touches.
-#[derive(Debug, Clone, Copy, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum ToolShapeWord {
     /// The device's ball.
@@ -333,7 +384,7 @@ pub(super) enum ToolShapeWord {
 }
 
 /// Sense of a spindle, seen along its axis towards the tool.
-#[derive(Debug, Clone, Copy, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum SpindleSense {
     /// Right-handed about the axis.
@@ -343,7 +394,7 @@ pub(super) enum SpindleSense {
 }
 
 /// When the spindle is switched on.
-#[derive(Debug, Clone, Copy, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum SpindleStart {
     /// Before the tool touches.
@@ -352,30 +403,8 @@ pub(super) enum SpindleStart {
     Follow,
 }
 
-/// `[removal]`: `law` says which of the other keys there are.
-#[derive(Debug, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct RemovalKeys {
-    pub law: RemovalWord,
-    pub coefficient_mm3_per_j: Option<f64>,
-    pub threshold_force_n: Option<f64>,
-    pub rate_mm3_per_s: Option<f64>,
-    pub reference_force_n: Option<f64>,
-    pub reference_speed_m_per_s: Option<f64>,
-    pub force_exponent: Option<f64>,
-    pub speed_exponent: Option<f64>,
-    pub reference_area_mm2: Option<f64>,
-    pub area_exponent: Option<f64>,
-    pub contact_area_mm2: Option<f64>,
-    pub wear_work_kj: Option<f64>,
-    pub wear_at_start_kj: Option<f64>,
-    pub contact_length_mm: Option<f64>,
-    pub specific_energy_j_per_mm3: Option<f64>,
-    pub friction_coefficient: Option<f64>,
-}
-
 /// Law of removal.
-#[derive(Debug, Clone, Copy, Deserialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub(super) enum RemovalWord {
     /// In proportion to force and speed.
@@ -384,85 +413,4 @@ pub(super) enum RemovalWord {
     Threshold,
     /// Powers of force, speed and contact area.
     Power,
-}
-
-/// `[workpiece.chamfer]`: what the edge should be like.
-#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ChamferKeys {
-    pub leg_min_mm: Option<f64>,
-    pub leg_max_mm: Option<f64>,
-    pub residual_burr_max_mm: Option<f64>,
-}
-
-/// `process.feed_follows`: the feed is lowered where this is above its limit.
-#[derive(Debug, Clone, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct FeedFollowsKeys {
-    pub force_n: Option<f64>,
-    pub power_w: Option<f64>,
-    pub least_share: Option<f64>,
-    pub time_constant_s: Option<f64>,
-}
-
-/// `process.tool_axis`.
-#[derive(Debug, Clone, Deserialize, schemars::JsonSchema)]
-#[serde(
-    untagged,
-    expecting = "\"down\" or a direction in the world such as [0, 0, -1]"
-)]
-pub(super) enum ToolAxisKeys {
-    /// A direction by name.
-    Word(ToolAxisWord),
-    /// A direction in the world.
-    Direction(Vec<f64>),
-}
-
-/// A direction by name.
-#[derive(Debug, Clone, Copy, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub(super) enum ToolAxisWord {
-    /// Along the world's -z.
-    Down,
-}
-
-/// `[collision]`.
-#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct CollisionKeys {
-    pub margin_mm: Option<f64>,
-    pub floor_height_mm: Option<f64>,
-    pub allowed_pairs: Option<Vec<[String; 2]>>,
-}
-
-/// `[[obstacle]]`.
-#[derive(Debug, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ObstacleKeys {
-    pub name: Option<String>,
-    pub box_mm: Option<Vec<f64>>,
-    pub mesh: Option<PathBuf>,
-    pub mesh_unit: Option<MeshUnit>,
-    pub position_mm: Option<Vec<f64>>,
-    pub rotation_deg: Option<Vec<f64>>,
-}
-
-/// `[simulation]`.
-#[derive(Debug, Default, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct SimulationKeys {
-    pub step_ms: Option<f64>,
-    pub device_substeps: Option<usize>,
-    pub gravity_m_per_s2: Option<Vec<f64>>,
-    pub seed: Option<u64>,
-}
-
-/// A metric in `[expect]`.
-#[derive(Debug, Deserialize, schemars::JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct BoundKeys {
-    /// The least that is allowed, in the unit of its name.
-    pub min: Option<f64>,
-    /// The most that is allowed, in the unit of its name.
-    pub max: Option<f64>,
 }

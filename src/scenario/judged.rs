@@ -1,10 +1,10 @@
-//! Values in use that rest on no public measurement. Where a key is declared says so: its row in scenarios/README.md, or what stands behind it in the device
-//! model file.
+//! Values in use that rest on no public measurement. Where a key is declared says so, or what stands behind it in the device model file.
 
 use serde::Serialize;
 
 use super::document::Document;
-use super::schema::page::{CELL, scenario_rows};
+use super::keys::Key;
+use super::suggestion::join;
 
 /// What the values of a device decide.
 const OF_DEVICE: &str = "contact force and stroke";
@@ -23,26 +23,27 @@ pub struct JudgedValue {
 }
 
 /// Judged values of a cell's file that works its edge; all of them are of tool and edge.
-pub(super) fn of_cell(document: &Document<'_>) -> Vec<JudgedValue> {
+pub(super) fn of_cell(document: &Document<'_>, tables: &[(String, Vec<Key>)]) -> Vec<JudgedValue> {
     let has = |table: &str| document.keys_in(table).next().is_some();
     if !has("removal") {
         return Vec::new();
     }
-    let rows = scenario_rows(&CELL).into_iter();
-    let judged = rows.filter_map(|(key, row)| {
-        let decides = row.judged()?.to_owned();
-        let (table, own) = key.rsplit_once('.')?;
-        let given = document.keys_in(table).any(|given| given == own);
+    let rows = (tables.iter()).flat_map(|(table, keys)| keys.iter().map(move |key| (table, key)));
+    let judged = rows.filter_map(|(table, key)| {
+        let decides = key.judged?.to_owned();
+        let given = document.keys_in(table).any(|given| given == key.name);
         // A burr's numbers count where there is one; no wear and the like decide nothing.
         let usual = table != "workpiece.burr" || has(table);
-        let default = usual && row.default_number().is_some_and(|value| value != 0.0);
+        let default = usual && key.usual_number().is_some();
         (given || default).then_some(JudgedValue {
-            key,
+            key: join(table, key.name),
             default: !given,
             decides,
         })
     });
-    judged.collect()
+    let mut judged: Vec<JudgedValue> = judged.collect();
+    judged.sort_by(|one, other| one.key.cmp(&other.key));
+    judged
 }
 
 /// Values of a device model file that are marked so there, but for those given above it and those that switch something off.
@@ -68,6 +69,8 @@ pub(super) fn of_model(text: &str, is_given: impl Fn(&str) -> bool) -> Vec<Judge
 mod tests {
     use std::path::Path;
 
+    use super::super::file::ScenarioFile;
+    use super::super::keys::tables;
     use super::*;
 
     #[test]
@@ -82,7 +85,7 @@ mod tests {
     fn keys_in_use_are_told_with_what_they_decide() {
         let of = |text: &str| {
             let document = Document::new(Path::new("a.toml"), text, 2).unwrap();
-            let found = of_cell(&document);
+            let found = of_cell(&document, &tables::<ScenarioFile>());
             let told = found.iter().map(|value| (value.key.clone(), value.default));
             assert!(found.iter().all(|value| !value.decides.is_empty()));
             told.collect::<Vec<_>>()

@@ -16,6 +16,7 @@ pub mod error;
 mod estimator;
 mod file;
 mod judged;
+pub(crate) mod keys;
 mod load;
 pub mod recorded_cell;
 pub mod removal_table;
@@ -36,9 +37,9 @@ pub use any::{AnyScenario, keys_given, load, load_any, load_bench, place_of};
 pub use bench::BenchScenario;
 pub use cell::{
     ArmScenario, BurrScenario, ChamferScenario, CollisionScenario, ContactScenario, DeviceScenario,
-    DriveScenario, EdgeChoice, EdgeSelection, Expectation, FeedFollows, FeedMeasure, LimitOverride,
-    Misplacement, Obstacle, ObstacleShape, PassScenario, ProcessScenario, RemovalScenario,
-    Scenario, ServoScenario, SimulationScenario, ToolScenario, WorkpieceScenario,
+    Direction, DriveScenario, EdgeChoice, EdgeSelection, Expectation, FeedFollows, FeedMeasure,
+    LimitOverride, Misplacement, Obstacle, ObstacleShape, PassScenario, ProcessScenario,
+    RemovalScenario, Scenario, ServoScenario, SimulationScenario, ToolScenario, WorkpieceScenario,
 };
 pub use cell_files::files_of_cell;
 pub use controller::{ControllerScenario, ForceLaw, attainable_set_pressure};

@@ -11,8 +11,8 @@ use super::check::Section;
 use super::document::{Document, read_text};
 use super::error::ScenarioError;
 use super::file::{self, Kind, KindOnly};
+use super::keys::{names, tables};
 use super::load;
-use super::sections::recorded_cell_sections;
 use super::sensing::white;
 use super::workpiece::workpiece;
 use super::{
@@ -27,7 +27,7 @@ mod improved;
 mod keys;
 
 pub use improved::improved_cell_text;
-pub(super) use keys::{BeliefKeys, JointsKeys, RecordedCellFile, SensorsKeys};
+pub(super) use keys::RecordedCellFile;
 
 /// A cell of which there are recordings.
 #[derive(Debug, Clone)]
@@ -94,15 +94,14 @@ impl RecordedCell {
 ///
 /// # Errors
 /// File, line, column and key of what is wrong, what was found and what was expected.
-#[rustfmt::skip] // A table: one key a line.
 pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
     let text = read_text(path)?;
     let document = Document::new(path, &text, file::SCHEMA)?;
-    let KindOnly { kind } = document.parse(&recorded_cell_sections())?;
+    let KindOnly { kind } = document.parse(&names(&tables::<RecordedCellFile>()))?;
     if kind == Kind::Cell {
         return of_scenario(&any::load(path)?, &document, &text);
     }
-    let file: RecordedCellFile = document.parse(&recorded_cell_sections())?;
+    let file: RecordedCellFile = document.read()?;
     if file.kind != Kind::RecordedCell {
         return Err(ScenarioError::OtherKind {
             file: path.to_owned(),
@@ -117,42 +116,33 @@ pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
         return Err(section("device").misplaced("locked", reason));
     }
     let part = workpiece(&section("workpiece"), &file.workpiece)?;
-    let contact = load::contact(&section("contact"), &file.contact, device.ideal)?;
-    let is_misplaced = section("workpiece").given().any(|key| key == "misplacement");
+    let contact = load::contact(&section("contact"), file.contact, device.ideal);
+    let is_misplaced = section("workpiece")
+        .given()
+        .any(|key| key == "misplacement");
     refuse_what_is_sought(&document, &part, is_misplaced)?;
     refuse_what_commands_say(&document)?;
-    let (joints, sensors, belief) = (section("joints"), section("sensors"), section("belief"));
-    let (drives, noise) = (&file.joints, &file.sensors);
-    let keys = &file.belief;
-    let gravity = keys.gravity_m_per_s2.as_deref();
-    let standard = DVec3::new(0.0, 0.0, -9.81);
+    let (joints, sensors, assumed) = (file.joints, file.sensors, file.belief);
     Ok(RecordedCell {
         path: path.to_owned(),
         effects: load::of_whole(&document, &file.effect, &device, &contact)?,
         text: text.clone(),
         title: section("").text("title", &file.title)?,
-        arm: load::arm(&section("arm"), &file.arm)?,
+        arm: load::arm(&section("arm"), file.arm)?,
         workpiece: part,
         contact,
-        gravity: belief.vector("gravity_m_per_s2", gravity, standard, -30.0..=30.0)?,
-        tolerance: belief.number("tolerance", keys.tolerance.unwrap_or(0.005), 0.0..=0.5)?,
-        start_stroke_tolerance: belief.number("start_stroke_tolerance_mm", keys.start_stroke_tolerance_mm.unwrap_or(0.2), 0.0..=10.0)?,
+        gravity: assumed.gravity,
+        tolerance: assumed.tolerance,
+        start_stroke_tolerance: assumed.start_stroke_tolerance,
         device,
         observed: Observation::COMPENSATED,
         has_job: false,
         sample_rate: f64::INFINITY,
-        servo_bandwidth: joints.known(&registry::SERVO_BANDWIDTH, "servo_bandwidth_hz", drives.servo_bandwidth_hz)?,
-        joint_stiffness: Some(joints.known_numbers(&registry::JOINT_STIFFNESS, "stiffness_n_m_per_rad", &drives.stiffness_n_m_per_rad)?),
-        joint_damping: [
-            joints.known_or_default(&registry::JOINT_DAMPING, "damping_time_ms", drives.damping_time_ms)?,
-            joints.number("damping_time_tolerance_ms", drives.damping_time_tolerance_ms.unwrap_or(1.0), 0.0..=50.0)?,
-        ],
-        joint_noise: sensors.number("joints_rad", noise.joints_rad, 1e-9..=0.01)?,
-        noise: [
-            sensors.number("regulator_pressure_pa", noise.regulator_pressure_pa, 1.0..=1e5)?,
-            sensors.number("stroke_um", noise.stroke_um, 0.01..=5e3)?,
-            sensors.number("force_n", noise.force_n, 1e-4..=1e3)?,
-        ],
+        servo_bandwidth: joints.servo_bandwidth,
+        joint_stiffness: Some(joints.stiffness),
+        joint_damping: [joints.damping_time, joints.damping_time_tolerance],
+        joint_noise: sensors.joints,
+        noise: [sensors.regulator_pressure, sensors.stroke, sensors.force],
     })
 }
 

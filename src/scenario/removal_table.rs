@@ -11,56 +11,60 @@ use super::check::Section;
 use super::document::{Document, read_text};
 use super::error::ScenarioError;
 use super::schema::plain_schema;
-use super::suggestion::Sections;
 
 /// Version of the format.
 const SCHEMA: u32 = 1;
 /// What `kind` says.
 pub const REMOVAL_TABLE: &str = "removal_table";
 
-const SECTIONS: &Sections = &[
-    (
-        "",
-        &["schema", "kind", "title", "tables", "columns", "believed"],
-    ),
-    ("tables", &["fit", "predict", "hold_back"]),
-    ("tables.hold_back", &["column", "from", "to"]),
-    (
-        "columns",
-        &[
-            "force",
-            "time",
-            "feed",
-            "speed",
-            "speed_under_load",
-            "area",
-            "wear",
-            "cumulate_wear",
-            "volume",
-            "weight",
-        ],
-    ),
-    ("columns.*", &["name", "unit", "where_0", "scatter_percent"]),
-    (
-        "believed",
-        &[
-            "law",
-            "reference_volume_mm3",
-            "reference_force_n",
-            "reference_time_s",
-            "reference_feed_mm_per_s",
-            "reference_speed",
-            "reference_area_mm2",
-            "force_exponent",
-            "time_exponent",
-            "speed_exponent",
-            "area_exponent",
-            "threshold_force_n",
-            "speed_sag_per_n",
-            "wear_rate",
-        ],
-    ),
-];
+fn sections() -> Vec<(String, Vec<&'static str>)> {
+    let sections: [(&str, &[&str]); 6] = [
+        (
+            "",
+            &["schema", "kind", "title", "tables", "columns", "believed"],
+        ),
+        ("tables", &["fit", "predict", "hold_back"]),
+        ("tables.hold_back", &["column", "from", "to"]),
+        (
+            "columns",
+            &[
+                "force",
+                "time",
+                "feed",
+                "speed",
+                "speed_under_load",
+                "area",
+                "wear",
+                "cumulate_wear",
+                "volume",
+                "weight",
+            ],
+        ),
+        ("columns.*", &["name", "unit", "where_0", "scatter_percent"]),
+        (
+            "believed",
+            &[
+                "law",
+                "reference_volume_mm3",
+                "reference_force_n",
+                "reference_time_s",
+                "reference_feed_mm_per_s",
+                "reference_speed",
+                "reference_area_mm2",
+                "force_exponent",
+                "time_exponent",
+                "speed_exponent",
+                "area_exponent",
+                "threshold_force_n",
+                "speed_sag_per_n",
+                "wear_rate",
+            ],
+        ),
+    ];
+    sections
+        .map(|(table, keys)| (table.to_owned(), keys.to_vec()))
+        .to_vec()
+}
 
 /// Kind of a file, whatever else stands in it.
 #[derive(Deserialize)]
@@ -293,7 +297,7 @@ pub fn is_removal_table(path: &Path) -> bool {
         return false;
     };
     let kind = Document::new(path, &text, u32::MAX)
-        .and_then(|document| document.parse::<KindKeys>(SECTIONS));
+        .and_then(|document| document.parse::<KindKeys>(&sections()));
     kind.is_ok_and(|keys| keys.kind.as_deref() == Some(REMOVAL_TABLE))
 }
 
@@ -304,7 +308,7 @@ pub fn is_removal_table(path: &Path) -> bool {
 pub fn load_removal_table(path: &Path) -> Result<RemovalTableFile, ScenarioError> {
     let text = read_text(path)?;
     let document = Document::new(path, &text, SCHEMA)?;
-    let keys: FileKeys = document.parse(SECTIONS)?;
+    let keys: FileKeys = document.parse(&sections())?;
     let tables = Section::new(&document, "tables");
     if keys.tables.fit.is_empty() {
         return Err(tables.refuse("fit", "empty".into(), "the tables to diagnose from".into()));

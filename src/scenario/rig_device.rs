@@ -62,7 +62,7 @@ pub(super) fn bench_device(
         device: DeviceScenario {
             model,
             parameters: rig.plant.device,
-            locked: keys.locked.unwrap_or(false),
+            locked: keys.locked,
             ideal: false,
             // Of its tool a rig file says nothing; it is drawn as that of models/device.toml.
             moving_centre_of_mass: 0.1,

@@ -1,112 +1,25 @@
-//! Which keys each table of a file has, read off the types in `file`, so that a message can point to the right table.
+//! Which keys each table of a file has, read off its types, so that a message can point to the right table.
 
 use serde::Deserialize;
 use serde::de::{Deserializer, Error, Visitor};
 
-use super::sensing::keys as sensing;
-use super::{bench_file, controller, device, estimator, file, recorded_cell};
-
-/// A table and its keys.
-type Table = (&'static str, &'static [&'static str]);
+use super::bench_file::BenchFile;
+use super::file::{ModelFile, ScenarioFile};
+use super::keys::{names, tables};
 
 /// Tables of a scenario file with their keys; `*` stands for a name that the user gives.
-pub(crate) fn scenario_sections() -> Vec<Table> {
-    let mut sections = vec![
-        ("", keys::<file::ScenarioFile>()),
-        ("arm", keys::<file::ArmKeys>()),
-        ("arm.link_masses", keys::<file::LinkMassKeys>()),
-        ("arm.limit_overrides", keys::<file::LimitKeys>()),
-        ("arm.drives", keys::<file::DriveKeys>()),
-        ("arm.servo", keys::<file::ServoKeys>()),
-        ("device", keys::<file::DeviceKeys>()),
-        ("device.override", keys::<device::ModelKeys>()),
-        ("workpiece", keys::<file::WorkpieceKeys>()),
-        ("workpiece.edge", keys::<file::EdgeKeys>()),
-        ("workpiece.misplacement", keys::<file::MisplacementKeys>()),
-        ("workpiece.burr", keys::<file::BurrKeys>()),
-        ("contact", keys::<file::ContactKeys>()),
-        ("workpiece.chamfer", keys::<file::ChamferKeys>()),
-        ("process", keys::<file::ProcessKeys>()),
-        ("process.feed_follows", keys::<file::FeedFollowsKeys>()),
-        ("pass", keys::<file::PassKeys>()),
-        ("tool", keys::<file::ToolKeys>()),
-        ("removal", keys::<file::RemovalKeys>()),
-        ("collision", keys::<file::CollisionKeys>()),
-        ("obstacle", keys::<file::ObstacleKeys>()),
-        ("simulation", keys::<file::SimulationKeys>()),
-        ("controller", keys::<controller::ControllerKeys>()),
-        ("expect.*", keys::<file::BoundKeys>()),
-    ];
-    sections.extend(sensing_sections());
-    sections
-}
-
-/// Tables of a recorded cell's scenario file with their keys.
-pub(crate) fn recorded_cell_sections() -> Vec<Table> {
-    let own = [
-        "arm",
-        "device",
-        "device.override",
-        "workpiece",
-        "workpiece.edge",
-        "contact",
-    ];
-    let mut sections: Vec<Table> = scenario_sections()
-        .into_iter()
-        .filter(|(table, _)| own.contains(table))
-        .collect();
-    sections.extend([
-        ("", keys::<recorded_cell::RecordedCellFile>()),
-        ("joints", keys::<recorded_cell::JointsKeys>()),
-        ("sensors", keys::<recorded_cell::SensorsKeys>()),
-        ("belief", keys::<recorded_cell::BeliefKeys>()),
-    ]);
-    sections
+pub(crate) fn scenario_sections() -> Vec<(String, Vec<&'static str>)> {
+    names(&tables::<ScenarioFile>())
 }
 
 /// Tables of a bench scenario file with their keys.
-pub(crate) fn bench_sections() -> Vec<Table> {
-    let mut sections = vec![
-        ("", keys::<bench_file::BenchFile>()),
-        ("device", keys::<file::DeviceKeys>()),
-        ("device.override", keys::<device::ModelKeys>()),
-        ("bench", keys::<bench_file::BenchKeys>()),
-        ("load", keys::<bench_file::LoadKeys>()),
-        ("hand", keys::<bench_file::HandKeys>()),
-        ("command", keys::<bench_file::CommandKeys>()),
-        ("valve", keys::<bench_file::ValveKeys>()),
-        ("simulation", keys::<bench_file::BenchSimulationKeys>()),
-        ("controller", keys::<controller::ControllerKeys>()),
-        ("estimator", keys::<estimator::EstimatorKeys>()),
-        ("expect.*", keys::<file::BoundKeys>()),
-    ];
-    sections.extend(sensing_sections());
-    sections
-}
-
-/// Tables that a scenario of either kind may have for its sensing.
-fn sensing_sections() -> [Table; 8] {
-    [
-        ("sensing", keys::<sensing::SensingKeys>()),
-        ("sensing.command", keys::<sensing::CommandChainKeys>()),
-        (
-            "sensing.regulator_pressure",
-            keys::<sensing::RegulatorPressureKeys>(),
-        ),
-        ("sensing.force", keys::<sensing::ForceKeys>()),
-        ("sensing.stroke", keys::<sensing::StrokeKeys>()),
-        ("sensing.acceleration", keys::<sensing::AccelerationKeys>()),
-        ("sensing.adc", keys::<sensing::AdcKeys>()),
-        ("sensing.filter", keys::<sensing::FilterKeys>()),
-    ]
+pub(crate) fn bench_sections() -> Vec<(String, Vec<&'static str>)> {
+    names(&tables::<BenchFile>())
 }
 
 /// Tables of a device model file with their keys.
-pub(crate) fn model_sections() -> Vec<Table> {
-    vec![
-        ("", keys::<file::ModelFile>()),
-        ("device", keys::<device::ModelKeys>()),
-    ]
+pub(crate) fn model_sections() -> Vec<(String, Vec<&'static str>)> {
+    names(&tables::<ModelFile>())
 }
 
 /// Keys of one table: the derived code hands its field names to the deserializer, which keeps them and stops.

@@ -6,7 +6,9 @@
 use super::check::Section;
 use super::document::Document;
 use super::error::ScenarioError;
-use crate::sensing::{CommandChain, FilterParameters, Measurement, SensingParameters};
+use crate::sensing::{
+    AdcParameters, CommandChain, FilterParameters, Measurement, SensingParameters,
+};
 use keys::{Preset, SensingKeys, SensorKind};
 use stages::Sensor;
 
@@ -27,7 +29,11 @@ pub(super) fn sensing(
         given,
         preset: keys.preset,
     };
-    let adc = stages::adc(&section("adc"), &keys.adc)?;
+    let adc = AdcParameters {
+        bits: keys.adc.bits,
+        reference: keys.adc.reference,
+        noise: keys.adc.noise,
+    };
     let pressure = &keys.regulator_pressure;
     let pressure_sensor = sensor("regulator_pressure", pressure.kind);
     let sample_rate = sample_rate(document, keys, step)?;
@@ -66,12 +72,12 @@ fn sample_rate(
         Preset::Ideal | Preset::White => f64::INFINITY,
     };
     let section = Section::new(document, "sensing");
-    let rate = section.number_or("sample_rate_hz", keys.sample_rate_hz, by_preset, 0.1..=1e5)?;
+    let rate = keys.sample_rate.unwrap_or(by_preset);
     // A step that is the sample period may be a rounding longer.
     if rate == f64::INFINITY || rate * step <= 1.0 + 1e-9 {
         return Ok(rate);
     }
-    Err(if keys.sample_rate_hz.is_some() {
+    Err(if keys.sample_rate.is_some() {
         let expected = format!("at most {} Hz, one sample a step", 1.0 / step);
         section.refuse_number("sample_rate_hz", rate, expected)
     } else {

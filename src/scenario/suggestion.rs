@@ -3,7 +3,7 @@
 use super::units::{Unit, stem};
 
 /// Tables of a file, by dotted name, with their keys.
-pub(crate) type Sections = [(&'static str, &'static [&'static str])];
+pub(crate) type Sections = [(String, Vec<&'static str>)];
 
 /// Words of which unit suffixes are made, ours and others that people write.
 const UNIT_WORDS: [&str; 62] = [
@@ -20,25 +20,29 @@ const SIMILAR: f64 = 0.85;
 /// Advice on an unknown dotted key.
 pub(crate) fn advice(key: &str, sections: &Sections) -> String {
     let (table, name) = split(key);
-    let is_of = |section: &str| match section.strip_suffix('*') {
-        Some(start) => table.starts_with(start),
-        None => table == section,
-    };
     let known = sections
         .iter()
-        .find(|(section, _)| is_of(section))
-        .map_or(&[][..], |(_, keys)| keys);
+        .find(|(section, _)| is_table(section, &table))
+        .map_or(&[][..], |(_, keys)| &keys[..]);
     if let Some(right) = known.iter().find(|right| differs_in_unit(name, right)) {
         let symbol = Unit::of_key(right).symbol;
         return format!("the key is `{right}`, in {symbol}");
     }
     if let Some((section, _)) = sections.iter().find(|(_, keys)| keys.contains(&name)) {
-        return match *section {
+        return match section.as_str() {
             "" => format!("`{name}` belongs to the top of the file, before any table"),
             section => format!("`{name}` belongs to [{section}]"),
         };
     }
     nearest(name, known)
+}
+
+/// Whether a table's dotted name is that of a declared one, where `*` stands for what the user calls it.
+pub(crate) fn is_table(declared: &str, table: &str) -> bool {
+    match declared.strip_suffix('*') {
+        Some(start) => table.starts_with(start),
+        None => table == declared,
+    }
 }
 
 /// Advice on a name that is none of the known ones.
@@ -57,7 +61,7 @@ pub(crate) fn nearest(name: &str, known: &[&str]) -> String {
 pub(crate) fn nearest_dotted(key: &str, sections: &Sections) -> String {
     let (table, name) = split(key);
     let all = || {
-        let keys = |(section, keys): &(&'static str, &'static [&'static str])| {
+        let keys = |(section, keys): &(String, Vec<&'static str>)| {
             let dotted = |key: &&'static str| (section.replace('*', "NAME"), *key);
             keys.iter().map(dotted).collect::<Vec<_>>()
         };
@@ -96,7 +100,7 @@ pub(crate) fn join(table: &str, key: &str) -> String {
 }
 
 /// Table, without list indices, and name of a dotted key.
-fn split(key: &str) -> (String, &str) {
+pub(crate) fn split(key: &str) -> (String, &str) {
     let (table, name) = key.rsplit_once('.').unwrap_or(("", key));
     let table = table
         .split('.')
@@ -126,14 +130,17 @@ fn differs_in_unit(name: &str, right: &str) -> bool {
 mod tests {
     use super::*;
 
-    const SECTIONS: &Sections = &[
-        ("", &["schema", "process", "contact"]),
-        (
-            "process",
-            &["feed_mm_per_s", "corner_feed_mm_per_s", "force_n"],
-        ),
-        ("contact", &["stiffness_n_per_m", "friction_coefficient"]),
-    ];
+    fn sections() -> Vec<(String, Vec<&'static str>)> {
+        let process = vec!["feed_mm_per_s", "corner_feed_mm_per_s", "force_n"];
+        vec![
+            (String::new(), vec!["schema", "process", "contact"]),
+            ("process".to_owned(), process),
+            (
+                "contact".to_owned(),
+                vec!["stiffness_n_per_m", "friction_coefficient"],
+            ),
+        ]
+    }
 
     #[test]
     fn each_kind_of_slip_leads_to_the_right_key() {
@@ -161,7 +168,7 @@ mod tests {
                 "known here are feed_mm_per_s, corner_feed_mm_per_s, force_n",
             ),
         ] {
-            assert_eq!(advice(key, SECTIONS), expected, "{key}");
+            assert_eq!(advice(key, &sections()), expected, "{key}");
         }
     }
 
@@ -180,7 +187,7 @@ mod tests {
                 "known here are feed_mm_per_s, corner_feed_mm_per_s, force_n",
             ),
         ] {
-            assert_eq!(nearest_dotted(key, SECTIONS), expected, "{key}");
+            assert_eq!(nearest_dotted(key, &sections()), expected, "{key}");
         }
     }
 

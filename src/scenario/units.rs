@@ -135,16 +135,28 @@ impl Unit {
         }
     }
 
-    /// A range in SI, in this unit, to twelve digits: the decimals that were meant.
+    /// A value in SI, in this unit, to twelve digits: the decimals that were meant.
+    pub fn of_si(self, value: f64) -> f64 {
+        let own = match self.conversion {
+            Divide(divisor) => value * divisor,
+            Multiply(factor) => value / factor,
+        };
+        format!("{own:.11e}").parse().unwrap_or(own)
+    }
+
+    /// A range in SI, in this unit.
     pub fn range(self, range: [f64; 2]) -> RangeInclusive<f64> {
-        let [low, high] = range.map(|value| {
-            let own = match self.conversion {
-                Divide(divisor) => value * divisor,
-                Multiply(factor) => value / factor,
-            };
-            format!("{own:.11e}").parse().unwrap_or(own)
-        });
+        let [low, high] = range.map(|value| self.of_si(value));
         low..=high
+    }
+
+    /// A range in this unit, for people.
+    pub fn show_range(self, range: RangeInclusive<f64>) -> String {
+        if range.end().is_finite() {
+            format!("{} to {}", range.start(), self.show(*range.end()))
+        } else {
+            format!("at least {}", self.show(*range.start()))
+        }
     }
 
     /// The value with its symbol.

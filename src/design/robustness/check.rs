@@ -1,7 +1,7 @@
 //! From `[robustness]` to what is drawn.
 
-use super::{DEFAULT_RUNS, Distribution, Scatter, Scattering};
-use crate::design::file::{DEFAULT_SEED, RobustnessKeys, ScatterKeys};
+use super::{Distribution, Scatter, Scattering};
+use crate::design::file::{RobustnessKeys, ScatterKeys};
 use crate::design::variable::Variable;
 use crate::scenario::ScenarioError;
 use crate::scenario::check::Section;
@@ -27,13 +27,13 @@ pub(in crate::design) fn scattering(
         Ok(Scatter {
             key: key.clone(),
             distribution: distribution(&section, keys)?,
-            whole: keys.whole.unwrap_or(false),
+            whole: keys.whole,
             place: document.place(&format!("robustness.variables.{key}")),
         })
     };
     Ok(Scattering {
-        runs: section.count("runs", keys.runs.unwrap_or(DEFAULT_RUNS), 10..=100_000)?,
-        seed: keys.seed.unwrap_or(DEFAULT_SEED),
+        runs: keys.runs,
+        seed: keys.seed,
         scatters: keys
             .variables
             .iter()
@@ -64,7 +64,7 @@ fn check_key(
         "device" => model.clone(),
         _ => [scenario_sections(), bench_sections()].concat(),
     };
-    let known = |(section, keys): &(&str, &[&str])| *section == table && keys.contains(&name);
+    let known = |(section, keys): &(String, Vec<&str>)| section == table && keys.contains(&name);
     if sections.iter().any(known) {
         return Ok(());
     }

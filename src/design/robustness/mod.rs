@@ -21,7 +21,6 @@ use crate::scenario::error::Place;
 pub(super) use check::scattering;
 pub(super) use draws::draw;
 
-pub(super) const DEFAULT_RUNS: usize = 40;
 /// Shares of the draws at which quantiles are told [1].
 const QUANTILES: [f64; 3] = [0.05, 0.5, 0.95];
 /// Probability with which an interval misses.

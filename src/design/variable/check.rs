@@ -5,8 +5,9 @@ use crate::scenario::check::Section;
 use crate::scenario::document::Document;
 use crate::scenario::sections::{model_sections, scenario_sections};
 use crate::scenario::suggestion::advice;
+use crate::scenario::units::Unit;
 
-use super::{BORE, CatalogueEntry, Domain, Variable};
+use super::{BORE, CatalogueEntry, Domain, ROD, Variable};
 use crate::design::catalogue::{STANDARD_CYLINDERS, standard_rod};
 use crate::design::file::{ScaleKeys, VariableKeys};
 
@@ -46,12 +47,12 @@ fn check_key(document: &Document<'_>, key: &str) -> Result<(), ScenarioError> {
         "controller" => !name.is_empty() && !name.contains('.'),
         "device" => sections
             .iter()
-            .any(|(section, keys)| *section == "device" && keys.contains(&name)),
+            .any(|(section, keys)| section == "device" && keys.contains(&name)),
         table => {
             TABLES.contains(&table)
                 && scenario_sections()
                     .iter()
-                    .any(|(section, keys)| *section == table && keys.contains(&name))
+                    .any(|(section, keys)| section == table && keys.contains(&name))
         }
     };
     if known {
@@ -100,7 +101,7 @@ impl Reader<'_> {
     }
 
     fn interval(&self) -> Result<Domain, ScenarioError> {
-        if self.keys.rod_mm.is_some() {
+        if self.keys.rods.is_some() {
             let reason = "only bore_mm has rods that follow it".to_owned();
             return Err(self.section.misplaced("rod_mm", reason));
         }
@@ -169,7 +170,11 @@ impl Reader<'_> {
 
     /// Rods that go with the bores, one an entry.
     fn rods(&self, bores: &[f64], rod_varies: bool) -> Result<Vec<Option<f64>>, ScenarioError> {
-        let given = self.keys.rod_mm.as_deref();
+        let in_mm = |rods: &Vec<f64>| {
+            let rods = rods.iter().map(|rod| Unit::of_key(ROD).of_si(*rod));
+            rods.collect::<Vec<_>>()
+        };
+        let given = self.keys.rods.as_ref().map(in_mm);
         if given.is_some() && self.key != BORE {
             let reason = "only bore_mm has rods that follow it".to_owned();
             return Err(self.section.misplaced("rod_mm", reason));
@@ -181,7 +186,7 @@ impl Reader<'_> {
         if self.key != BORE || rod_varies {
             return Ok(vec![None; bores.len()]);
         }
-        if let Some(rods) = given {
+        if let Some(rods) = &given {
             let fit = rods
                 .iter()
                 .zip(bores)

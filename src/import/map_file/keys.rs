@@ -231,13 +231,13 @@ pub(super) fn schema() -> serde_json::Value {
 }
 
 /// Tables of a map with their keys.
-pub(super) fn sections() -> Vec<(&'static str, &'static [&'static str])> {
+pub(super) fn sections() -> Vec<(String, Vec<&'static str>)> {
     vec![
-        ("", keys::<MapFile>()),
-        ("file", keys::<FileKeys>()),
-        ("file.time", keys::<TimeKeys>()),
-        ("file.rows", keys::<RowsKeys>()),
-        ("file.channel", keys::<ChannelKeys>()),
-        ("constant", keys::<ConstantKeys>()),
+        ("".to_owned(), keys::<MapFile>().to_vec()),
+        ("file".to_owned(), keys::<FileKeys>().to_vec()),
+        ("file.time".to_owned(), keys::<TimeKeys>().to_vec()),
+        ("file.rows".to_owned(), keys::<RowsKeys>().to_vec()),
+        ("file.channel".to_owned(), keys::<ChannelKeys>().to_vec()),
+        ("constant".to_owned(), keys::<ConstantKeys>().to_vec()),
     ]
 }

@@ -4,12 +4,13 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::LazyLock;
 
-use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use schemars::JsonSchema;
 use serde::Deserialize;
-use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, Visitor};
-use serde_json::{Map, json};
+use serde::de::{Deserializer, MapAccess, Visitor};
 
 use crate::plant::registry;
+use crate::scenario::keys::{Below, Filled, Key, Name, Plain, Table, table_schema};
+use crate::scenario::units::Unit;
 
 /// The one key that is no number.
 const GAS_PROCESS: &str = "gas_process";
@@ -21,7 +22,7 @@ static KEYS: LazyLock<Vec<&str>> = LazyLock::new(|| {
 });
 
 /// The table.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(in super::super) struct ModelKeys {
     /// By its key, in the key's unit.
     pub numbers: BTreeMap<&'static str, f64>,
@@ -37,6 +38,8 @@ pub(in super::super) enum GasProcessKind {
     /// Heats up, exchanges heat with the wall.
     WallHeat,
 }
+
+impl Plain for GasProcessKind {}
 
 /// Whether its number is a whole one.
 fn is_count(key: &str) -> bool {
@@ -61,7 +64,7 @@ impl<'de> Visitor<'de> for Keys {
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<ModelKeys, A::Error> {
         let mut keys = ModelKeys::default();
-        while let Some(key) = map.next_key_seed(Key)? {
+        while let Some(key) = map.next_key_seed(Name(&KEYS))? {
             if key == GAS_PROCESS {
                 keys.gas_process = Some(map.next_value()?);
             } else if is_count(key) {
@@ -75,50 +78,44 @@ impl<'de> Visitor<'de> for Keys {
     }
 }
 
-struct Key;
+/// The defaults of the device.
+static DEFAULTS: LazyLock<toml::Table> = LazyLock::new(|| {
+    const MODEL: &str = include_str!("../../../models/device.toml");
+    let model: toml::Table = MODEL.parse().unwrap_or_default();
+    let device = model.get("device").and_then(toml::Value::as_table);
+    device.cloned().unwrap_or_default()
+});
 
-impl<'de> DeserializeSeed<'de> for Key {
-    type Value = &'static str;
-
-    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<&'static str, D::Error> {
-        deserializer.deserialize_identifier(self)
-    }
-}
-
-impl Visitor<'_> for Key {
-    type Value = &'static str;
-
-    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str("a key")
-    }
-
-    fn visit_str<E: Error>(self, name: &str) -> Result<&'static str, E> {
-        let known = KEYS.iter().find(|key| **key == name);
-        known.copied().ok_or_else(|| E::unknown_field(name, &KEYS))
-    }
-}
-
-impl JsonSchema for ModelKeys {
-    fn schema_name() -> std::borrow::Cow<'static, str> {
-        "ModelKeys".into()
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        let mut properties = Map::new();
-        for key in KEYS.iter() {
-            let kind = match is_count(key) {
-                true => "integer",
-                false => "number",
+impl Table for ModelKeys {
+    fn keys() -> Vec<Key> {
+        let numbers = registry::all().filter_map(|number| {
+            let name = number.device_key?;
+            let key = match is_count(name) {
+                true => Key::new::<u32>(name, number.meaning),
+                false => Key::new::<f64>(name, number.meaning),
             };
-            properties.insert((*key).to_owned(), json!({ "type": kind }));
-        }
-        let choice = generator.subschema_for::<GasProcessKind>();
-        properties.insert(GAS_PROCESS.to_owned(), choice.into());
-        json_schema!({
-            "description": "`[device]` of a device model file, and `[device.override]` of a scenario.",
-            "type": "object",
-            "properties": properties,
-            "additionalProperties": false,
-        })
+            Some(key.known(number))
+        });
+        let gas = "what the air in the chambers does as it is compressed: keeps its temperature, or warms up and trades heat with the walls";
+        let keys = numbers.chain([Key::new::<GasProcessKind>(GAS_PROCESS, gas)]);
+        let with_default = |key: Key| match DEFAULTS.get(key.name) {
+            Some(default) => key.by_default(default.clone()),
+            None => key,
+        };
+        keys.map(with_default).collect()
+    }
+}
+
+impl Filled for ModelKeys {
+    type Written = Self;
+    const BELOW: Option<Below> = Some(Below::of::<Self>());
+
+    fn filled(written: Self, _: Unit) -> Result<Self, &'static str> {
+        Ok(written)
+    }
+
+    fn schema() -> serde_json::Value {
+        let about = "`[device]` of a device model file, and `[device.override]` of a scenario.";
+        table_schema(about, &Self::keys())
     }
 }

@@ -19,7 +19,7 @@ pub(super) const JOINT: &str = "joint";
 pub(super) type KeyTable = BTreeMap<String, EffectValue>;
 
 /// The effects of a file.
-#[derive(Debug)]
+#[derive(Debug, Clone, PartialEq)]
 pub(in super::super) enum EffectKeys {
     /// `[[effect]]`.
     List(Vec<KeyTable>),

@@ -8,7 +8,7 @@ use super::super::check::{Section, plain};
 use super::super::error::ScenarioError;
 
 /// A value.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(
     untagged,
     expecting = "a number, a text, or { value } with `low` and `high`, or with `min`, `max` and `unit` of a constant"
@@ -20,7 +20,7 @@ pub(in super::super) enum EffectValue {
 }
 
 /// A number with what is known of it.
-#[derive(Debug, Clone, Default, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(in super::super) struct KnownNumber {
     pub value: f64,

@@ -113,18 +113,25 @@ static TABLES: LazyLock<Vec<(&str, Vec<&str>)>> = LazyLock::new(|| {
 });
 
 /// Tables of a rig file with their keys.
-pub(super) fn sections() -> Vec<(&'static str, &'static [&'static str])> {
+pub(super) fn sections() -> Vec<(String, Vec<&'static str>)> {
     let mut sections = vec![
-        ("", keys::<RigKeys>()),
-        ("rig", keys::<PartKeys>()),
-        ("recordings", keys::<RecordingsKeys>()),
-        ("shares", keys::<SharesKeys>()),
-        ("known", keys::<KnownKeys>()),
-        ("flange", keys::<FlangeKeys>()),
-        ("flange.fit", &FlangeModel::NAMES),
-        ("recordings.force_ramp", keys::<ForceRampKeys>()),
+        ("".to_owned(), keys::<RigKeys>().to_vec()),
+        ("rig".to_owned(), keys::<PartKeys>().to_vec()),
+        ("recordings".to_owned(), keys::<RecordingsKeys>().to_vec()),
+        ("shares".to_owned(), keys::<SharesKeys>().to_vec()),
+        ("known".to_owned(), keys::<KnownKeys>().to_vec()),
+        ("flange".to_owned(), keys::<FlangeKeys>().to_vec()),
+        ("flange.fit".to_owned(), FlangeModel::NAMES.to_vec()),
+        (
+            "recordings.force_ramp".to_owned(),
+            keys::<ForceRampKeys>().to_vec(),
+        ),
     ];
-    sections.extend(TABLES.iter().map(|(table, keys)| (*table, &keys[..])));
+    sections.extend(
+        TABLES
+            .iter()
+            .map(|(table, keys)| ((*table).to_owned(), keys.clone())),
+    );
     let with_accuracy = [
         "cylinder.*",
         "end_stop.*",
@@ -134,6 +141,6 @@ pub(super) fn sections() -> Vec<(&'static str, &'static [&'static str])> {
         "contact.*",
         "sensors.*",
     ];
-    sections.extend(with_accuracy.map(|tables| (tables, keys::<NumberKeys>())));
+    sections.extend(with_accuracy.map(|tables| (tables.to_owned(), keys::<NumberKeys>().to_vec())));
     sections
 }

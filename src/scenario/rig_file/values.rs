@@ -99,8 +99,8 @@ fn refuse_unknown(
     numbers: &Numbers,
 ) -> Result<(), ScenarioError> {
     let sections = sections();
-    let known = sections.iter().find(|(name, _)| *name == table);
-    let known = known.map_or(&[][..], |(_, keys)| keys);
+    let known = sections.iter().find(|(name, _)| name == table);
+    let known = known.map_or(&[][..], |(_, keys)| &keys[..]);
     match numbers.keys().find(|key| !known.contains(&key.as_str())) {
         None => Ok(()),
         Some(key) => {

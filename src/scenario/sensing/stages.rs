@@ -1,24 +1,18 @@
-//! Each stage of `[sensing]`: its kind, the range of each of its keys, and what its values must be to each other.
-
-use std::ops::RangeInclusive;
+//! Each stage of `[sensing]`: its kind, and what its values must be to each other.
 
 use super::super::check::Section;
 use super::super::error::ScenarioError;
+use super::super::keys::Table;
 use super::keys::{
-    AccelerationKeys, AdcKeys, CommandChainKeys, CommandChainKind, FilterKeys, FilterKind,
-    ForceKeys, Preset, RegulatorPressureKeys, SensorKind, StrokeKeys,
+    AccelerationKeys, CommandChainKeys, CommandChainKind, FilterKeys, FilterKind, ForceKeys,
+    Preset, RegulatorPressureKeys, STANDARD_GRAVITY, SensorKind, StrokeKeys,
 };
-use crate::sensing::parameters::{
-    paper_accelerometer, paper_load_cell, paper_outlet_pressure, paper_position, paper_set_value,
-};
+use crate::sensing::parameters::{paper_accelerometer, paper_outlet_pressure};
 use crate::sensing::{
     AccelerometerParameters, AdcParameters, AmplifierParameters, CommandChain, FilterParameters,
     InstrumentationAmplifierParameters, LoadCellParameters, Measurement, OutletPressureParameters,
     PositionSensorParameters, PwmFilterParameters, SetValueParameters,
 };
-
-/// Standard gravity [m/s2], with which a capacity in kg is a force.
-const STANDARD_GRAVITY: f64 = 9.80665;
 
 /// Standard deviations of white noise: 1 N of force, and for pressure and acceleration about what makes 1 N on the default device.
 pub mod white {
@@ -45,224 +39,174 @@ pub struct Sensor<'a> {
 }
 
 impl Sensor<'_> {
-    /// The channel of this kind; `deviation` is the key of the noise, what the file gives for it, the default of white noise [SI] and the range.
-    fn channel<S>(
+    /// The channel of this kind; of white noise with a standard deviation [SI].
+    fn channel<K: Table, S>(
         &self,
-        deviation: (&str, Option<f64>, f64, RangeInclusive<f64>),
+        white: f64,
         real: impl FnOnce(&Section<'_>) -> Result<S>,
     ) -> Result<Measurement<S>> {
-        let (key, given, default, range) = deviation;
-        let kind = self.given.unwrap_or(match self.preset {
-            Preset::Ideal => SensorKind::Ideal,
-            Preset::White => SensorKind::White,
-            Preset::Paper => SensorKind::Real,
-        });
-        let by_preset = self.given.is_none();
-        Ok(match kind {
-            SensorKind::Ideal => {
-                only(&self.section, "ideal", by_preset, &[])?;
-                Measurement::Ideal
-            }
-            SensorKind::White => {
-                only(&self.section, "white", by_preset, &[key])?;
-                Measurement::White {
-                    standard_deviation: self.section.number_or(key, given, default, range)?,
-                }
-            }
+        let (kind, word) = match self.preset {
+            Preset::Ideal => (SensorKind::Ideal, "ideal"),
+            Preset::White => (SensorKind::White, "white"),
+            Preset::Paper => (SensorKind::Real, "real"),
+        };
+        self.section.of_kind::<K>(Some(word))?;
+        Ok(match self.given.unwrap_or(kind) {
+            SensorKind::Ideal => Measurement::Ideal,
+            SensorKind::White => Measurement::White {
+                standard_deviation: white,
+            },
             SensorKind::Real => Measurement::Real(real(&self.section)?),
         })
     }
 }
 
-/// Refuses keys that a kind does not have.
-pub fn only(section: &Section<'_>, kind: &str, by_preset: bool, allowed: &[&str]) -> Result<()> {
-    let is_other = |key: &&str| *key != "kind" && !allowed.contains(key);
-    let Some(key) = section.given().find(is_other) else {
-        return Ok(());
-    };
-    let others = match allowed {
-        [] => "no other key".to_owned(),
-        _ => allowed.join(", "),
-    };
-    let origin = if by_preset { ", the preset's," } else { "" };
-    Err(section.misplaced(key, format!("kind = \"{kind}\"{origin} has {others}")))
-}
-
 /// Way from the set pressure to the regulator.
-#[rustfmt::skip] // A table: one key a line.
-pub fn command(section: &Section<'_>, keys: &CommandChainKeys, preset: Preset) -> Result<CommandChain> {
-    let kind = keys.kind.unwrap_or(match preset {
-        Preset::Paper => CommandChainKind::Real,
-        Preset::Ideal | Preset::White => CommandChainKind::Ideal,
-    });
-    if kind == CommandChainKind::Ideal {
-        only(section, "ideal", keys.kind.is_none(), &[])?;
-        return Ok(CommandChain::Ideal);
-    }
-    let paper = paper_set_value();
-    let (pwm, amplifier) = (paper.pwm, paper.amplifier);
-    Ok(CommandChain::Real(SetValueParameters {
-        full_scale: section.number_or("full_scale_bar_gauge", keys.full_scale_bar_gauge, paper.full_scale, 0.1..=16.0)?,
-        full_voltage: section.number_or("full_input_v", keys.full_input_v, paper.full_voltage, 0.1..=50.0)?,
-        pwm: PwmFilterParameters {
-            high_voltage: section.number_or("pwm_high_v", keys.pwm_high_v, pwm.high_voltage, 0.1..=50.0)?,
-            bits: section.count("pwm_bits", keys.pwm_bits.unwrap_or(pwm.bits), 1..=16)?,
-            frequency: section.number_or("pwm_frequency_hz", keys.pwm_frequency_hz, pwm.frequency, 1.0..=1e5)?,
-            resistance: section.number_or("resistance_ohm", keys.resistance_ohm, pwm.resistance, 10.0..=1e7)?,
-            capacitance: section.number_or("capacitance_uf", keys.capacitance_uf, pwm.capacitance, 0.001..=1e4)?,
-        },
-        amplifier: AmplifierParameters {
-            nominal_gain: section.number_or("amplifier_gain", keys.amplifier_gain, amplifier.nominal_gain, 1.01..=100.0)?,
-            feedback_resistor_error: section.number_or("feedback_resistor_error", keys.feedback_resistor_error, amplifier.feedback_resistor_error, -0.5..=0.5)?,
-            ground_resistor_error: section.number_or("ground_resistor_error", keys.ground_resistor_error, amplifier.ground_resistor_error, -0.5..=0.5)?,
-        },
-    }))
+pub fn command(
+    section: &Section<'_>,
+    keys: &CommandChainKeys,
+    preset: Preset,
+) -> Result<CommandChain> {
+    let (kind, word) = match preset {
+        Preset::Paper => (CommandChainKind::Real, "real"),
+        Preset::Ideal | Preset::White => (CommandChainKind::Ideal, "ideal"),
+    };
+    section.of_kind::<CommandChainKeys>(Some(word))?;
+    Ok(match keys.kind.unwrap_or(kind) {
+        CommandChainKind::Ideal => CommandChain::Ideal,
+        CommandChainKind::Real => CommandChain::Real(SetValueParameters {
+            full_scale: keys.full_scale,
+            full_voltage: keys.full_input,
+            pwm: PwmFilterParameters {
+                high_voltage: keys.pwm_high,
+                bits: keys.pwm_bits,
+                frequency: keys.pwm_frequency,
+                resistance: keys.resistance,
+                capacitance: keys.capacitance,
+            },
+            amplifier: AmplifierParameters {
+                nominal_gain: keys.amplifier_gain,
+                feedback_resistor_error: keys.feedback_resistor_error,
+                ground_resistor_error: keys.ground_resistor_error,
+            },
+        }),
+    })
 }
 
 /// The regulator's outlet pressure.
-#[rustfmt::skip] // A table: one key a line.
 pub fn regulator_pressure(
     sensor: &Sensor<'_>,
     keys: &RegulatorPressureKeys,
     adc: AdcParameters,
 ) -> Result<Measurement<OutletPressureParameters>> {
-    let (key, given, range) = ("standard_deviation_pa", keys.standard_deviation_pa, 0.0..=1e6);
-    sensor.channel((key, given, white::PRESSURE, range.clone()), |section| {
-        let paper = paper_outlet_pressure();
-        let real = OutletPressureParameters {
-            full_scale: section.number_or("full_scale_bar_gauge", keys.full_scale_bar_gauge, paper.full_scale, 0.1..=16.0)?,
-            zero_voltage: section.number_or("zero_v", keys.zero_v, paper.zero_voltage, 0.0..=50.0)?,
-            full_voltage: section.number_or("full_v", keys.full_v, paper.full_voltage, 0.1..=50.0)?,
-            scale_error: section.number_or("scale_error", keys.scale_error, paper.scale_error, -0.5..=0.5)?,
-            converter_gain: section.number_or("converter_gain", keys.converter_gain, paper.converter_gain, 0.01..=100.0)?,
-            assumed_converter_gain: section.number_or("assumed_converter_gain", keys.assumed_converter_gain, paper.assumed_converter_gain, 0.01..=100.0)?,
-            noise: section.number_or(key, given, paper.noise, range)?,
+    let given = keys.standard_deviation;
+    let white = given.unwrap_or(white::PRESSURE);
+    sensor.channel::<RegulatorPressureKeys, _>(white, |section| {
+        let (zero, full) = (("zero_v", keys.zero), ("full_v", keys.full));
+        check_order(section, zero, full, Order::Strict)?;
+        Ok(OutletPressureParameters {
+            full_scale: keys.full_scale,
+            zero_voltage: keys.zero,
+            full_voltage: keys.full,
+            scale_error: keys.scale_error,
+            converter_gain: keys.converter_gain,
+            assumed_converter_gain: keys.assumed_converter_gain,
+            noise: given.unwrap_or(paper_outlet_pressure().noise),
             adc,
-        };
-        let zero = ("zero_v", keys.zero_v, real.zero_voltage);
-        check_order(section, zero, ("full_v", keys.full_v, real.full_voltage), Order::Strict)?;
-        Ok(real)
+        })
     })
 }
 
 /// The contact force.
-#[rustfmt::skip] // A table: one key a line.
-pub fn force(sensor: &Sensor<'_>, keys: &ForceKeys, adc: AdcParameters) -> Result<Measurement<LoadCellParameters>> {
-    let (key, given, range) = ("standard_deviation_n", keys.standard_deviation_n, 0.0..=1000.0);
-    sensor.channel((key, given, white::FORCE, range.clone()), |section| {
-        let paper = paper_load_cell();
-        let amplifier = paper.amplifier;
-        let real = LoadCellParameters {
-            capacity: match keys.capacity_kg {
-                Some(mass) => section.number("capacity_kg", mass, 0.1..=1e4)? * STANDARD_GRAVITY,
-                None => paper.capacity,
-            },
-            rated_output: section.number_or("rated_output_mv_per_v", keys.rated_output_mv_per_v, paper.rated_output, 0.1..=100.0)?,
-            excitation: section.number_or("excitation_v", keys.excitation_v, paper.excitation, 0.1..=50.0)?,
-            zero_offset: section.number_or("zero_offset_n", keys.zero_offset_n, paper.zero_offset, -1000.0..=1000.0)?,
-            noise: section.number_or(key, given, paper.noise, range)?,
-            amplifier: InstrumentationAmplifierParameters {
-                gain_resistor: section.number_or("gain_resistor_ohm", keys.gain_resistor_ohm, amplifier.gain_resistor, 6.0..=1e6)?,
-                reference_voltage: section.number_or("reference_v", keys.reference_v, amplifier.reference_voltage, -50.0..=50.0)?,
-                lowest_output: section.number_or("lowest_output_v", keys.lowest_output_v, amplifier.lowest_output, -50.0..=50.0)?,
-                highest_output: section.number_or("highest_output_v", keys.highest_output_v, amplifier.highest_output, -50.0..=50.0)?,
-            },
-            assumed_gain_resistor: section.number_or("assumed_gain_resistor_ohm", keys.assumed_gain_resistor_ohm, paper.assumed_gain_resistor, 6.0..=1e6)?,
-            adc,
-        };
-        let lowest = ("lowest_output_v", keys.lowest_output_v, real.amplifier.lowest_output);
-        let reference = ("reference_v", keys.reference_v, real.amplifier.reference_voltage);
-        let highest = ("highest_output_v", keys.highest_output_v, real.amplifier.highest_output);
+pub fn force(
+    sensor: &Sensor<'_>,
+    keys: &ForceKeys,
+    adc: AdcParameters,
+) -> Result<Measurement<LoadCellParameters>> {
+    sensor.channel::<ForceKeys, _>(keys.standard_deviation, |section| {
+        let lowest = ("lowest_output_v", keys.lowest_output);
+        let reference = ("reference_v", keys.reference);
+        let highest = ("highest_output_v", keys.highest_output);
         check_order(section, lowest, highest, Order::Strict)?;
         check_order(section, lowest, reference, Order::OrEqual)?;
         check_order(section, reference, highest, Order::OrEqual)?;
-        Ok(real)
+        Ok(LoadCellParameters {
+            capacity: keys.capacity * STANDARD_GRAVITY,
+            rated_output: keys.rated_output,
+            excitation: keys.excitation,
+            zero_offset: keys.zero_offset,
+            noise: keys.standard_deviation,
+            amplifier: InstrumentationAmplifierParameters {
+                gain_resistor: keys.gain_resistor,
+                reference_voltage: keys.reference,
+                lowest_output: keys.lowest_output,
+                highest_output: keys.highest_output,
+            },
+            assumed_gain_resistor: keys.assumed_gain_resistor,
+            adc,
+        })
     })
 }
 
 /// The stroke.
-#[rustfmt::skip] // A table: one key a line.
-pub fn stroke(sensor: &Sensor<'_>, keys: &StrokeKeys) -> Result<Measurement<PositionSensorParameters>> {
-    let (key, given, range) = ("standard_deviation_mm", keys.standard_deviation_mm, 0.0..=10.0);
-    sensor.channel((key, given, white::STROKE, range.clone()), |section| {
-        let paper = paper_position();
+pub fn stroke(
+    sensor: &Sensor<'_>,
+    keys: &StrokeKeys,
+) -> Result<Measurement<PositionSensorParameters>> {
+    sensor.channel::<StrokeKeys, _>(keys.standard_deviation, |_| {
         Ok(PositionSensorParameters {
-            gain: section.number_or("gain", keys.gain, paper.gain, 0.5..=1.5)?,
-            offset: section.number_or("offset_mm", keys.offset_mm, paper.offset, -50.0..=50.0)?,
-            noise: section.number_or(key, given, paper.noise, range)?,
-            resolution: section.number_or("resolution_mm", keys.resolution_mm, paper.resolution, 0.0..=10.0)?,
+            gain: keys.gain,
+            offset: keys.offset,
+            noise: keys.standard_deviation,
+            resolution: keys.resolution,
         })
     })
 }
 
 /// The acceleration.
-#[rustfmt::skip] // A table: one key a line.
 pub fn acceleration(
     sensor: &Sensor<'_>,
     keys: &AccelerationKeys,
 ) -> Result<Measurement<AccelerometerParameters>> {
-    let (key, given, range) = ("standard_deviation_m_per_s2", keys.standard_deviation_m_per_s2, 0.0..=1000.0);
-    sensor.channel((key, given, white::ACCELERATION, range.clone()), |section| {
-        let paper = paper_accelerometer();
+    let given = keys.standard_deviation;
+    let white = given.unwrap_or(white::ACCELERATION);
+    sensor.channel::<AccelerationKeys, _>(white, |_| {
         Ok(AccelerometerParameters {
-            bias: section.number_or("bias_m_per_s2", keys.bias_m_per_s2, paper.bias, -100.0..=100.0)?,
-            noise: section.number_or(key, given, paper.noise, range)?,
-            range: section.number_or("range_m_per_s2", keys.range_m_per_s2, paper.range, 0.1..=1e5)?,
-            resolution: section.number_or("resolution_m_per_s2", keys.resolution_m_per_s2, paper.resolution, 0.0..=100.0)?,
+            bias: keys.bias,
+            noise: given.unwrap_or(paper_accelerometer().noise),
+            range: keys.range,
+            resolution: keys.resolution,
         })
-    })
-}
-
-/// The ADC of regulator pressure and force.
-#[rustfmt::skip] // A table: one key a line.
-pub fn adc(section: &Section<'_>, keys: &AdcKeys) -> Result<AdcParameters> {
-    let paper = AdcParameters::ARDUINO;
-    Ok(AdcParameters {
-        bits: section.count("bits", keys.bits.unwrap_or(paper.bits), 1..=24)?,
-        reference: section.number_or("reference_v", keys.reference_v, paper.reference, 0.1..=50.0)?,
-        noise: section.number_or("noise_steps", keys.noise_steps, paper.noise, 0.0..=1000.0)?,
     })
 }
 
 /// Treatment of the force's noise at a sample rate [Hz], infinite for none.
 pub fn filter(section: &Section<'_>, keys: &FilterKeys, rate: f64) -> Result<FilterParameters> {
-    let (kind, allowed): (&str, &[&str]) = match keys.kind {
-        FilterKind::None => ("none", &[]),
-        FilterKind::FirstOrder => ("first_order", &["time_constant_ms"]),
-        FilterKind::Bessel => ("bessel", &["cutoff_hz"]),
-        FilterKind::Median => ("median", &["length"]),
-    };
-    only(section, kind, false, allowed)?;
+    section.of_kind::<FilterKeys>(None)?;
     if keys.kind != FilterKind::None && rate == f64::INFINITY {
         let expected = "it to be given in Hz, for [sensing.filter] works from sample to sample";
         return Err(Section::new(section.document(), "sensing").missing("sample_rate_hz", expected));
     }
-    let missing = |key| section.missing(key, &format!("it to be given with kind = \"{kind}\""));
+    // What a kind needs is there by now.
+    let needed = |value: Option<f64>| value.unwrap_or_default();
     Ok(match keys.kind {
         FilterKind::None => FilterParameters::None,
-        FilterKind::FirstOrder => {
-            let key = "time_constant_ms";
-            let value = keys.time_constant_ms.ok_or_else(|| missing(key))?;
-            FilterParameters::FirstOrder {
-                time_constant: section.number(key, value, 0.1..=10_000.0)?,
-            }
-        }
+        FilterKind::FirstOrder => FilterParameters::FirstOrder {
+            time_constant: needed(keys.time_constant),
+        },
         FilterKind::Bessel => {
-            let key = "cutoff_hz";
-            let value = keys.cutoff_hz.ok_or_else(|| missing(key))?;
-            let cutoff = section.number(key, value, 0.001..=50_000.0)?;
+            let cutoff = needed(keys.cutoff);
             if cutoff >= 0.5 * rate {
                 let expected = format!("less than {} Hz, half the sample rate", 0.5 * rate);
-                return Err(section.refuse_number(key, value, expected));
+                return Err(section.refuse_si("cutoff_hz", cutoff, expected));
             }
             FilterParameters::Bessel2 { cutoff }
         }
         FilterKind::Median => {
-            let key = "length";
-            let value = keys.length.ok_or_else(|| missing(key))?;
-            let length = section.count(key, value, 1..=99)?;
+            let length = keys.length.unwrap_or_default();
             if length % 2 == 0 {
-                return Err(section.refuse(key, length.to_string(), "an odd number".to_owned()));
+                let expected = "an odd number".to_owned();
+                return Err(section.refuse("length", length.to_string(), expected));
             }
             FilterParameters::Median { length }
         }
@@ -276,28 +220,25 @@ enum Order {
     OrEqual,
 }
 
-/// A key, what the file gives for it, and the value that holds [V].
-type Voltage<'a> = (&'a str, Option<f64>, f64);
-
-/// Refuses two voltages in the wrong order, at the one that the file gives.
+/// Refuses two voltages [V] in the wrong order, at the one that the file gives.
 fn check_order(
     section: &Section<'_>,
-    low: Voltage<'_>,
-    high: Voltage<'_>,
+    low: (&str, f64),
+    high: (&str, f64),
     order: Order,
 ) -> Result<()> {
-    if low.2 < high.2 || (order == Order::OrEqual && low.2 == high.2) {
+    if low.1 < high.1 || (order == Order::OrEqual && low.1 == high.1) {
         return Ok(());
     }
     let (more, less) = match order {
         Order::Strict => ("more than", "less than"),
         Order::OrEqual => ("at least", "at most"),
     };
-    let (at_fault, words, other) = if high.1.is_some() {
+    let (at_fault, words, other) = if section.given().any(|key| key == high.0) {
         (high, more, low)
     } else {
         (low, less, high)
     };
-    let expected = format!("{words} {}, {} V", other.0, other.2);
-    Err(section.refuse_number(at_fault.0, at_fault.2, expected))
+    let expected = format!("{words} {}, {} V", other.0, other.1);
+    Err(section.refuse_si(at_fault.0, at_fault.1, expected))
 }

@@ -135,19 +135,19 @@ fn a_load_has_the_keys_of_its_kind_and_no_others() {
             FREE,
             "kind = \"free\"\nposition_mm = 1\n",
             "10:1",
-            "`load.position_mm` cannot stand here: nothing is met when kind = \"free\"",
+            "`load.position_mm` cannot stand here: kind = \"free\" has no other key",
         ),
         (
             FREE,
             "kind = \"load_cell\"\nposition_mm = 1\nfrequency_hz = 1\n",
             "11:1",
-            "`load.frequency_hz` cannot stand here: a load cell stands still; kind = \"surface\" moves",
+            "`load.frequency_hz` cannot stand here: kind = \"load_cell\" has position_mm, stiffness_n_per_m, damping_n_s_per_m",
         ),
         (
             FREE,
             "kind = \"load_cell\"\n",
             "8:2",
-            "`load.position_mm` is missing, expected it to be given for this kind of load",
+            "`load.position_mm` is missing, expected it to be given with kind = \"load_cell\"",
         ),
         (
             FREE,
@@ -159,7 +159,7 @@ fn a_load_has_the_keys_of_its_kind_and_no_others() {
             FREE,
             "kind = \"surface\"\nposition_mm = 1\npeak_to_peak_mm = 1\n",
             "8:2",
-            "`load.frequency_hz` is missing, expected it to be given for this kind of load",
+            "`load.frequency_hz` is missing, expected it to be given with kind = \"surface\"",
         ),
         (
             FREE,

@@ -1,15 +1,17 @@
-//! scenarios/README.md is the reference of all keys, so it is held against what the program does.
+//! The keys as they are declared are held against what the program does, and scenarios/README.md against them.
 
 use std::collections::BTreeMap;
 
 use toml::{Table, Value};
 
 use super::super::AnyScenario;
-use super::super::sections::{bench_sections, model_sections, scenario_sections};
+use super::super::bench_file::BenchFile;
+use super::super::file::ScenarioFile;
+use super::super::keys::{Key, tables};
+use super::super::recorded_cell::RecordedCellFile;
 use super::super::suggestion::join;
 use super::super::units::Unit;
 use super::{MINIMAL, MINIMAL_BENCH, read_any, scenarios};
-use crate::plant::{Number, registry};
 
 /// Which of the two formats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,58 +22,106 @@ enum Format {
 
 use Format::{Bench, Cell};
 
-/// A line of the README's tables of keys.
+/// A key in words.
 struct Row {
     unit: String,
     default: String,
     range: String,
-    meaning: String,
 }
 
-/// Whether a key of a chapter of the README belongs to a format.
-fn belongs(key: &str, chapter: &str, format: Format) -> bool {
-    let of_both = ["schema", "kind", "title"].contains(&key) || key.starts_with("device.");
-    match chapter {
-        "Keys of a cell" => format == Cell || of_both,
-        "Keys of a bench" => format == Bench,
-        "Keys of the sensing chain" | "Keys of the controller" => true,
-        // Neither a cell that runs nor a bench.
-        "Keys of a recorded cell" => false,
-        other => panic!("{key} stands in the chapter {other:?}"),
-    }
+/// The tables of a kind of file, and its word in scenarios/README.md.
+type Kind = (&'static str, Vec<(String, Vec<Key>)>);
+
+fn kinds() -> [Kind; 3] {
+    [
+        ("cell", tables::<ScenarioFile>()),
+        ("bench", tables::<BenchFile>()),
+        ("recorded_cell", tables::<RecordedCellFile>()),
+    ]
 }
 
+/// Keys of a format by dotted name, without those that a user names.
 fn rows(format: Format) -> BTreeMap<String, Row> {
-    let text = std::fs::read_to_string(scenarios().join("README.md")).unwrap();
-    let mut chapter = "";
-    let mut rows = BTreeMap::new();
-    for line in text.lines() {
-        if let Some(heading) = line.strip_prefix("## ") {
-            chapter = heading;
-        }
-        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
-        let quoted = |cell: &&str| Some(cell.strip_prefix('`')?.strip_suffix('`')?.to_owned());
-        let Some(key) = cells.get(1).and_then(quoted) else {
+    let [(_, cell), (_, bench), _] = kinds();
+    let tables = match format {
+        Cell => cell,
+        Bench => bench,
+    };
+    let rows = tables.iter().flat_map(|(table, keys)| {
+        let own = keys.iter().filter(|key| key.row(table).is_some());
+        own.map(|key| {
+            let [unit, default, range, _] = key.columns();
+            let row = Row {
+                unit,
+                default,
+                range,
+            };
+            (join(table, key.name), row)
+        })
+    });
+    let is_own = |(key, _): &(String, Row)| !key.contains("expect");
+    rows.filter(is_own).collect()
+}
+
+/// The page with the tables of keys below its marks as the keys are declared, and the tables that it has.
+fn page(text: &str) -> (String, Vec<(&str, String)>) {
+    const HEAD: &str =
+        "| key | unit | default | range | meaning |\n| --- | --- | --- | --- | --- |\n";
+    let kinds = kinds();
+    let (mut page, mut told) = (String::new(), Vec::new());
+    let mut lines = text.lines().peekable();
+    while let Some(line) = lines.next() {
+        page += &format!("{line}\n");
+        let mark = line
+            .strip_prefix("<!-- keys: ")
+            .and_then(|mark| mark.strip_suffix(" -->"));
+        let Some((kind, names)) = mark.and_then(|mark| mark.split_once(' ')) else {
             continue;
         };
-        assert_eq!(cells.len(), 7, "{line}");
-        if !belongs(&key, chapter, format) {
-            continue;
+        while lines.next_if(|line| line.starts_with('|')).is_some() {}
+        page += HEAD;
+        let (kind, tables) = kinds.iter().find(|(name, _)| *name == kind).unwrap();
+        for name in names.split(' ') {
+            let name = if name == "top" { "" } else { name };
+            let (_, keys) = tables.iter().find(|(table, _)| table == name).unwrap();
+            for row in keys.iter().filter_map(|key| key.row(name)) {
+                page += &format!("{row}\n");
+            }
+            told.push((*kind, name.to_owned()));
         }
-        let cell = |index: usize| cells[index].to_owned();
-        let (unit, default, range, meaning) = (cell(2), cell(3), cell(4), cell(5));
-        let row = Row {
-            unit,
-            default,
-            range,
-            meaning,
-        };
-        assert!(
-            rows.insert(key, row).is_none(),
-            "a key stands twice: {line}"
-        );
     }
-    rows
+    (page, told)
+}
+
+#[test]
+fn the_page_tells_the_keys_as_they_are_declared() {
+    let path = scenarios().join("README.md");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let (page, told) = page(&text);
+    if std::env::var_os("IDC_UPDATE_SCHEMAS").is_some() {
+        std::fs::write(&path, &page).unwrap();
+    }
+    assert!(
+        text == page,
+        "scenarios/README.md differs from the keys; IDC_UPDATE_SCHEMAS=1 writes it anew"
+    );
+    // Those of a cell stand for those of the others that are the same.
+    let [(_, cell), ..] = kinds();
+    for (kind, tables) in kinds() {
+        for (table, keys) in &tables {
+            let same = |keys: &[Key]| keys.iter().map(|key| key.row("")).collect::<Vec<_>>();
+            let of_cell = cell
+                .iter()
+                .any(|(own, others)| own == table && same(others) == same(keys));
+            let is_told = |kind| told.iter().any(|(own, name)| *own == kind && name == table);
+            let is_by_pass = table == "pass.expect.*";
+            let is_top = table.is_empty();
+            assert!(
+                is_told(kind) || (of_cell && is_told("cell")) || is_by_pass || is_top,
+                "{kind}: {table}"
+            );
+        }
+    }
 }
 
 /// Keys that a key needs beside it, and the key itself if it is needed there.
@@ -225,35 +275,6 @@ fn outcome(format: Format, key: &str, value: Option<Value>) -> Result<String, St
 }
 
 #[test]
-fn every_key_has_its_row_and_every_row_its_key() {
-    for (format, mut sections) in [(Cell, scenario_sections()), (Bench, bench_sections())] {
-        // The tables' own names are keys of the tables around them.
-        let tables: Vec<&str> = sections.iter().map(|(table, _)| *table).collect();
-        sections.retain(|(_, keys)| !keys.is_empty());
-        assert_eq!(
-            sections.len(),
-            tables.len(),
-            "a table without keys was not read off its type"
-        );
-        let mut keys: Vec<String> = sections
-            .iter()
-            .flat_map(|(table, keys)| keys.iter().map(|key| join(table, key)))
-            .filter(|key| !tables.contains(&key.as_str()) && !key.starts_with("expect"))
-            .collect();
-        keys.sort();
-        let documented: Vec<String> = rows(format).into_keys().collect();
-        assert_eq!(documented, keys, "{format:?}");
-    }
-    // A model file has the keys of [device.override].
-    let find = |sections: &[(&str, &'static [&'static str])], table: &str| {
-        sections.iter().find(|(name, _)| *name == table).unwrap().1
-    };
-    let of_model = find(&model_sections(), "device");
-    assert_eq!(of_model, find(&scenario_sections(), "device.override"));
-    assert_eq!(of_model, find(&bench_sections(), "device.override"));
-}
-
-#[test]
 fn every_unit_is_that_of_the_key() {
     for (key, row) in [Cell, Bench].into_iter().flat_map(rows) {
         let unit = Unit::of_key(&key);
@@ -366,52 +387,4 @@ fn range_is_kept(format: Format, key: &str, row: &Row) -> bool {
         assert!(refused(above), "{key} above {high}: {:?}", outcome(above));
     }
     true
-}
-
-/// Keys other than those of the device model file that give a number of the description, with it.
-#[rustfmt::skip] // A table: one number a line.
-const GIVEN: [(&str, &Number); 15] = [
-    ("contact.spindle_frequency_hz", &registry::SPINDLE_FREQUENCY),
-    ("contact.stiffness_n_per_m", &registry::CONTACT_STIFFNESS), ("load.stiffness_n_per_m", &registry::CONTACT_STIFFNESS),
-    ("contact.damping_n_s_per_m", &registry::CONTACT_DAMPING), ("load.damping_n_s_per_m", &registry::CONTACT_DAMPING),
-    ("contact.friction_coefficient", &registry::EDGE_FRICTION), ("contact.runout_frequency_hz", &registry::RUNOUT_FREQUENCY),
-    ("arm.servo.lag_bandwidth_hz", &registry::SERVO_BANDWIDTH), ("arm.drives.stiffness_n_m_per_rad", &registry::JOINT_STIFFNESS),
-    ("arm.drives.damping_time_ms", &registry::JOINT_DAMPING), ("arm.drives.backlash_deg", &registry::JOINT_PLAY),
-    ("arm.drives.friction_n_m", &registry::DRIVE_FRICTION), ("bench.gravity_along_extension_m_per_s2", &registry::GRAVITY),
-    ("estimator.moving_mass_kg", &registry::MOVING_MASS), ("estimator.seal_coulomb_force_n", &registry::SEAL_COULOMB),
-];
-
-#[test]
-fn what_gives_a_number_of_the_description_has_its_range_and_that_of_the_device_its_meaning() {
-    let mut of_device = 0;
-    for (key, row) in [Cell, Bench].into_iter().flat_map(rows) {
-        let device_key = key.strip_prefix("device.override.");
-        let of_file = device_key.filter(|key| *key != "gas_process");
-        let known = of_file.map(|key| {
-            let found = registry::all().find(|number| number.device_key == Some(key));
-            found.unwrap_or_else(|| panic!("{key} is not registered"))
-        });
-        if let Some(number) = known {
-            assert_eq!(row.meaning, number.meaning, "{key}");
-            of_device += 1;
-        }
-        let given = GIVEN.iter().find(|(given, _)| *given == key);
-        let others = ["contact.runout_um", "arm.drives.joint"];
-        let of_plant = key.starts_with("contact.") || key.starts_with("arm.drives.");
-        assert!(
-            given.is_some() || !of_plant || others.contains(&&*key),
-            "{key}"
-        );
-        let Some(number) = known.or(given.map(|(_, number)| *number)) else {
-            continue;
-        };
-        let range = Unit::of_key(&key).range(number.range);
-        let words = match range.end().is_finite() {
-            true => format!("{} to {}", range.start(), range.end()),
-            false => format!("at least {}", range.start()),
-        };
-        assert_eq!(row.range, words, "{key}");
-    }
-    let numbers = registry::all().filter(|number| number.device_key.is_some());
-    assert_eq!(of_device, 2 * numbers.count());
 }

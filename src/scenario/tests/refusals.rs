@@ -112,14 +112,14 @@ fn a_number_out_of_range_is_refused_with_its_unit() {
         (
             "[750, 0, 200]",
             "[750, 0]",
-            "11:1",
-            "`workpiece.position_mm` is a list of 2, expected a list of 3",
+            "11:15",
+            "`workpiece.position_mm` is [750, 0], expected a list of 3",
         ),
         (
             "[750, 0, 200]",
             "[7, 0, 2, 9]",
-            "11:1",
-            "`workpiece.position_mm` is a list of 4, expected a list of 3",
+            "11:15",
+            "`workpiece.position_mm` is [7, 0, 2, 9], expected a list of 3",
         ),
         (
             "[process]",
@@ -259,12 +259,12 @@ fn a_burr_has_the_keys_of_its_kind_and_no_others() {
         (
             "kind = \"table\"",
             "14:12",
-            "`workpiece.burr.path` is missing, expected a CSV file with kind = \"table\"",
+            "`workpiece.burr.path` is missing, expected it to be given with kind = \"table\"",
         ),
         (
             "kind = \"constant\"\nheight_mm = 1\nwidth_mm = 2",
             "17:1",
-            "`workpiece.burr.width_mm` cannot stand here: kind = \"constant\" has height_mm, root_mm",
+            "`workpiece.burr.width_mm` cannot stand here: kind = \"constant\" has root_mm, height_mm",
         ),
         (
             "kind = \"none\"\nseed = 2",

@@ -5,8 +5,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use glam::DVec3;
 
 use super::super::{
-    BurrScenario, DriveScenario, EdgeSelection, Expectation, LimitOverride, Misplacement,
-    ObstacleShape, ProcessScenario, ServoScenario, SimulationScenario,
+    BurrScenario, Direction, DriveScenario, EdgeSelection, Expectation, LimitOverride,
+    Misplacement, ObstacleShape, ProcessScenario, ServoScenario, SimulationScenario,
 };
 use super::{MINIMAL, edited, read, scenarios};
 
@@ -26,6 +26,7 @@ fn every_key_of_the_process_reaches_its_field() {
         jerk: 7.0,
         working_stroke: 0.018,
         lean: -PI / 4.0,
+        passes: 1,
         feed_follows: None,
         tool_axis: None,
         roll: Some(FRAC_PI_2),
@@ -44,15 +45,15 @@ fn the_tool_s_axis_is_a_word_or_a_direction_in_place_of_a_lean() {
         read(&edited("feed_mm_per_s = 20\n", &keys))
     };
     let axis = |text: &str| with(text).unwrap().process.tool_axis;
-    assert_eq!(axis("\"down\""), Some(DVec3::NEG_Z));
-    let given = axis("[3, 0, -4]").unwrap();
+    assert_eq!(axis("\"down\""), Some(Direction(DVec3::NEG_Z)));
+    let Direction(given) = axis("[3, 0, -4]").unwrap();
     assert!(
         (given - DVec3::new(0.6, 0.0, -0.8)).length() < 1e-12,
         "{given}"
     );
     for (wrong, expected) in [
         ("[0, 0, 0]", "a direction in the world"),
-        ("[0, 1]", "a list of 3"),
+        ("[0, 1]", "a direction in the world"),
         ("\"sideways\"", "\"down\" or a direction"),
         ("\"down\"\nlean_deg = 5", "expected one of the two"),
     ] {
