@@ -13,14 +13,12 @@ mod texts;
 mod times;
 
 use channels::{channel_map, constant};
-use keys::{ClockKey, FileKeys, FormKey, MapFile, MarkKey, sections};
+use keys::{ClockKey, FileKeys, FormKey, MapFile, MarkKey};
 use texts::text_form;
 use times::time_map;
 
 /// Version of the format.
 const SCHEMA: u32 = 1;
-/// Atmosphere where the map says nothing [Pa].
-const STANDARD_ATMOSPHERE: f64 = 101_325.0;
 
 /// Reads and checks a map.
 ///
@@ -29,14 +27,9 @@ const STANDARD_ATMOSPHERE: f64 = 101_325.0;
 pub fn load_map(path: &Path) -> Result<ImportMap, ScenarioError> {
     let text = read_text(path)?;
     let document = Document::new(path, &text, SCHEMA)?;
-    let keys: MapFile = document.parse(&sections())?;
+    let keys: MapFile = document.read()?;
     let top = Section::new(&document, "");
-    let atmosphere = top.number_or(
-        "atmosphere_pa",
-        keys.atmosphere_pa,
-        STANDARD_ATMOSPHERE,
-        3e4..=1.2e5,
-    )?;
+    let atmosphere = keys.atmosphere;
     let mut files = Vec::new();
     for (index, file) in keys.file.iter().enumerate() {
         files.push(file_map(&document, index, file, atmosphere)?);
@@ -73,17 +66,14 @@ fn file_map(
     let table = format!("file[{index}]");
     let section = Section::new(document, table.clone());
     check_forms(document, &section, keys, &table)?;
-    if keys.same_log == Some(true) && (index == 0 || keys.path.is_some()) {
+    if keys.same_log && (index == 0 || keys.path.is_some()) {
         let reason = match index {
             0 => "the first [[file]] has none before it".to_owned(),
             _ => "the log is that of the [[file]] before it, and has its path".to_owned(),
         };
         return Err(section.misplaced("same_log", reason));
     }
-    let sample_rate = match keys.sample_rate_hz {
-        Some(rate) => Some(section.number("sample_rate_hz", rate, 1e-3..=1e7)?),
-        None => None,
-    };
+    let sample_rate = keys.sample_rate;
     let time = keys
         .time
         .as_ref()
@@ -92,14 +82,11 @@ fn file_map(
     let channels = keys.channel.iter().enumerate();
     Ok(FileMap {
         path: keys.path.as_ref().map(|path| document.folder().join(path)),
-        same_log: keys.same_log.unwrap_or(false),
+        same_log: keys.same_log,
         form: form(&section, keys)?,
-        dropped: [
-            keys.drop_first_rows.unwrap_or(0),
-            keys.drop_last_rows.unwrap_or(0),
-        ],
+        dropped: [keys.drop_first_rows, keys.drop_last_rows],
         accepts_truncated: keys.accept_truncated.unwrap_or(false),
-        accepts_unused_rows: keys.accept_unused_rows.unwrap_or(false),
+        accepts_unused_rows: keys.accept_unused_rows,
         missing: missing(&section, keys)?,
         rows: keys.rows.as_ref().map(|rows| RowChoice {
             column: rows.column.0.clone(),
@@ -134,13 +121,13 @@ fn check_forms(
 ) -> Result<(), ScenarioError> {
     let is_bag = matches!(keys.form, FormKey::Bag | FormKey::Mcap);
     let says_times = is_bag || matches!(keys.form, FormKey::Tdms);
-    if keys.time.is_none() && keys.sample_rate_hz.is_none() && !says_times {
+    if keys.time.is_none() && keys.sample_rate.is_none() && !says_times {
         return Err(section.missing(
             "time",
             "the column that holds the times, and its unit; or `sample_rate_hz` where no column does",
         ));
     }
-    if keys.sample_rate_hz.is_some() && is_bag {
+    if keys.sample_rate.is_some() && is_bag {
         let reason = "the messages of a bag have times".to_owned();
         return Err(section.misplaced("sample_rate_hz", reason));
     }
@@ -229,27 +216,26 @@ fn spreadsheet(section: &Section<'_>, keys: &FileKeys) -> Result<Form, ScenarioE
 }
 
 fn clock(section: &Section<'_>, index: usize, keys: &FileKeys) -> Result<Clock, ScenarioError> {
-    match keys.clock.unwrap_or(ClockKey::Shared) {
-        ClockKey::Shared => {
-            for (key, given) in [
-                ("aligned_by", keys.aligned_by.is_some()),
-                ("largest_offset_s", keys.largest_offset_s.is_some()),
-            ] {
-                if given {
-                    let reason = "the clock is shared; \"unknown\" has it found".to_owned();
-                    return Err(section.misplaced(key, reason));
-                }
+    let given = |key: &&str| section.given().any(|given| given == *key);
+    match keys.clock {
+        ClockKey::Shared => match ["aligned_by", "largest_offset_s"]
+            .iter()
+            .find(|key| given(key))
+        {
+            Some(key) => {
+                let reason = "the clock is shared; \"unknown\" has it found".to_owned();
+                Err(section.misplaced(key, reason))
             }
-            let offset =
-                section.number_or("clock_offset_s", keys.clock_offset_s, 0.0, -1e9..=1e9)?;
-            Ok(Clock::Shared { offset })
-        }
+            None => Ok(Clock::Shared {
+                offset: keys.clock_offset,
+            }),
+        },
         ClockKey::Unknown if index == 0 => {
             let reason = "the first file's clock is the recording's".to_owned();
             Err(section.misplaced("clock", reason))
         }
         ClockKey::Unknown => {
-            if keys.clock_offset_s.is_some() {
+            if given(&"clock_offset_s") {
                 let reason = "the clock is unknown; \"shared\" has an offset".to_owned();
                 return Err(section.misplaced("clock_offset_s", reason));
             }
@@ -258,13 +244,10 @@ fn clock(section: &Section<'_>, index: usize, keys: &FileKeys) -> Result<Clock, 
                     "a quantity of the first file and one of this that rise and fall together";
                 return Err(section.missing("aligned_by", expected));
             };
-            let largest = section.number_or(
-                "largest_offset_s",
-                keys.largest_offset_s,
-                10.0,
-                1e-3..=3600.0,
-            )?;
-            Ok(Clock::Unknown { by, largest })
+            Ok(Clock::Unknown {
+                by,
+                largest: keys.largest_offset,
+            })
         }
     }
 }
@@ -319,16 +302,45 @@ fn check_together(document: &Document<'_>, map: &ImportMap) -> Result<(), Scenar
 mod tests {
     use super::super::units;
     use super::*;
+    use crate::scenario::keys::tables;
 
     const PAGE: &str = include_str!("../../assets/import/README.md");
 
     #[test]
-    fn the_page_of_maps_names_every_key_and_unit() {
-        for (table, keys) in sections() {
-            for key in keys {
-                assert!(PAGE.contains(&format!("`{key}`")), "{table}: {key}");
+    fn the_page_of_maps_tells_every_key_as_it_is_declared_and_names_every_unit() {
+        const HEAD: &str = "| key | what it says | without it |\n| --- | --- | --- |\n";
+        let mut rest = PAGE;
+        let mut page = String::new();
+        // The page has a table for each of these, in its order.
+        let order = [
+            "",
+            "file",
+            "file.time",
+            "file.rows",
+            "file.channel",
+            "constant",
+        ];
+        let tables = tables::<MapFile>();
+        assert_eq!(tables.len(), order.len());
+        for name in order {
+            let (_, keys) = tables.iter().find(|(table, _)| table == name).unwrap();
+            let (before, table) = rest.split_once(HEAD).unwrap();
+            let rows: String = keys.iter().map(|key| key.short_row() + "\n").collect();
+            page += &format!("{before}{HEAD}{rows}");
+            rest = table;
+            while rest.starts_with('|') {
+                rest = rest.split_once('\n').unwrap().1;
             }
         }
+        page += rest;
+        if std::env::var_os("IDC_UPDATE_SCHEMAS").is_some() {
+            let path = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/import/README.md");
+            std::fs::write(path, &page).unwrap();
+        }
+        assert!(
+            page == PAGE,
+            "assets/import/README.md differs from the keys; IDC_UPDATE_SCHEMAS=1 writes it anew"
+        );
         for unit in units::UNITS {
             assert!(PAGE.contains(&format!("`{}`", unit.name)), "{}", unit.name);
         }

@@ -63,17 +63,6 @@ impl<'a> Section<'a> {
         self.number(key, value, Unit::of_key(key).range(number.range))
     }
 
-    /// As `number`, or the default [SI] if the file gives none.
-    pub fn number_or(
-        &self,
-        key: &str,
-        given: Option<f64>,
-        default: f64,
-        range: RangeInclusive<f64>,
-    ) -> Result<f64, ScenarioError> {
-        given.map_or(Ok(default), |value| self.number(key, value, range))
-    }
-
     /// A whole number within a range.
     pub fn count<T: PartialOrd + Copy + std::fmt::Display>(
         &self,

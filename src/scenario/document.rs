@@ -7,7 +7,7 @@ use serde::Deserialize;
 use toml::de::{DeTable, DeValue};
 
 use super::error::{Excerpt, Place, ScenarioError};
-use super::keys::{Table, names, tables};
+use super::keys::{Key, Table, names, tables};
 use super::rig_file::NUMBER_OR_TABLE;
 use super::suggestion::{Sections, advice, is_table, join, split};
 use super::units::Unit;
@@ -101,6 +101,12 @@ impl<'a> Document<'a> {
     pub fn read<T: Table>(&self) -> Result<T, ScenarioError> {
         let tables = tables::<T>();
         let file = self.parse(&names(&tables))?;
+        self.hold_ranges(&tables)?;
+        Ok(file)
+    }
+
+    /// Holds the numbers of tables to their ranges.
+    pub fn hold_ranges(&self, tables: &[(String, Vec<Key>)]) -> Result<(), ScenarioError> {
         for entry in &self.entries {
             let Some(Scalar::Number(value)) = entry.scalar else {
                 continue;
@@ -122,7 +128,7 @@ impl<'a> Document<'a> {
                 });
             }
         }
-        Ok(file)
+        Ok(())
     }
 
     /// The text that stands at a key.

@@ -167,7 +167,7 @@ keys! {
         position: DVec3 = "position_mm" in -10_000..=10_000;
         /// part in the world: roll, pitch, yaw
         rotation: DVec3 = "rotation_deg" in -360..=360, or vec![0; 3];
-        edge: EdgeKeys = "edge";
+        edge: EdgeKeys = "edge" must stand;
         misplacement: Misplacement = "misplacement";
         burr: Option<BurrKeys> = "burr";
         chamfer: ChamferKeys = "chamfer";

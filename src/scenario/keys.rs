@@ -110,14 +110,24 @@ macro_rules! plain {
 }
 plain! {
     bool = "true or false",
+    i32 = "whole number",
     u32 = "whole number",
     u64 = "whole number",
     usize = "whole number",
     String = "text",
     PathBuf = "file",
     Vec<[String; 2]> = "table of pairs",
+    Vec<usize> = "whole numbers",
     Vec<PathBuf> = "files",
-    Vec<String> = "texts",
+    [String; 2] = "two texts",
+}
+
+impl Plain for Vec<String> {
+    const WORD: &'static str = "texts";
+
+    fn absent() -> Option<Self> {
+        Some(Self::new())
+    }
 }
 
 impl Plain for BTreeMap<String, PathBuf> {
@@ -232,6 +242,12 @@ impl Key {
         }
     }
 
+    /// That a file must give it, though its type could do without.
+    pub fn must(mut self, _stand: &str) -> Self {
+        self.is_required = true;
+        self
+    }
+
     /// Of some kinds of its table alone, which need it if it has no default.
     pub fn of_kinds(mut self, kinds: &'static [&'static str]) -> Self {
         self.kinds = kinds;
@@ -344,6 +360,19 @@ impl Key {
         let columns = columns.join(" ").replace("|  |", "| |");
         let name = join(table, self.name);
         (!self.word.is_empty()).then(|| format!("| `{name}` | {columns}"))
+    }
+
+    /// Its row in a table of keys that says what it means and what comes of leaving it out.
+    #[cfg(test)]
+    pub fn short_row(&self) -> String {
+        let [_, default, _, meaning] = self.columns();
+        let default = match default.as_str() {
+            "required" => "refused".to_owned(),
+            "none" => "-".to_owned(),
+            text if text.starts_with('"') || text == "false" => format!("`{text}`"),
+            other => other.to_owned(),
+        };
+        format!("| `{}` | {meaning} | {default} |", self.name)
     }
 
     /// What an editor is told of it.
@@ -513,6 +542,9 @@ pub(crate) fn given<'de, T: Filled, A: MapAccess<'de>>(
 /// The value of a key that a file leaves out.
 pub(crate) fn left_out<T: Filled, E: Error>(key: &'static str, own: &Key) -> Result<T, E> {
     let Some(default) = own.default.clone() else {
+        if own.is_required && own.kinds.is_empty() {
+            return Err(E::missing_field(key));
+        }
         return T::absent().ok_or_else(|| E::missing_field(key));
     };
     let written = default.try_into::<T::Written>().map_err(E::custom)?;
@@ -525,7 +557,7 @@ pub(crate) fn default_of_si(key: &str, value: f64) -> Default {
 }
 
 /// A table of a file: its keys, each with what it means, the field that it fills in SI, its name, and
-/// `for` which kinds of the table it is, `in` which range [its unit], `of` which number of the description (whose range and default it has),
+/// whether it `must stand` though its type could do without, `for` which kinds of the table it is, `in` which range [its unit], `of` which number of the description (whose range and default it has),
 /// `or` which default [its unit], `from` which default in SI, `else` which value of fields before it, `shown` how that is told, `being` how what is allowed is
 /// told, and what of a value that was never measured in public is `judged`.
 macro_rules! keys {
@@ -533,7 +565,7 @@ macro_rules! keys {
         $(#[doc = $about:literal])+
         $vis:vis struct $table:ident $(: $($derive:ident),+)? { $(
             $(#[doc = $meaning:literal])*
-            $field:ident: $type:ty = $key:literal $(for $($kind:literal)|+)? $(in $range:expr)? $(, of $number:expr)?
+            $field:ident: $type:ty = $key:literal $(must $stand:ident)? $(for $($kind:literal)|+)? $(in $range:expr)? $(, of $number:expr)?
                 $(, or $default:expr)? $(, from $si:expr)? $(, else $derived:expr)? $(, shown $words:literal)? $(, being $being:literal)?
                 $(, judged $decides:literal)?;
         )+ }
@@ -549,7 +581,7 @@ macro_rules! keys {
             fn keys() -> Vec<$crate::scenario::keys::Key> {
                 vec![$(
                     $crate::scenario::keys::Key::new::<$type>($key, concat!($($meaning),*))
-                        $(.of_kinds(&[$($kind),+]))? $(.within($range))? $(.known(&$number))? $(.by_default($default))?
+                        $(.must(stringify!($stand)))? $(.of_kinds(&[$($kind),+]))? $(.within($range))? $(.known(&$number))? $(.by_default($default))?
                         $(.by_default($crate::scenario::keys::default_of_si($key, $si)))? $(.told($words))? $(.being($being))? $(.judged($decides))?,
                 )+]
             }

@@ -10,61 +10,13 @@ use serde_json::{Value, json};
 use super::check::Section;
 use super::document::{Document, read_text};
 use super::error::ScenarioError;
-use super::schema::plain_schema;
+use super::keys::{Plain, keys};
+use super::schema::of_file;
 
 /// Version of the format.
 const SCHEMA: u32 = 1;
 /// What `kind` says.
 pub const REMOVAL_TABLE: &str = "removal_table";
-
-fn sections() -> Vec<(String, Vec<&'static str>)> {
-    let sections: [(&str, &[&str]); 6] = [
-        (
-            "",
-            &["schema", "kind", "title", "tables", "columns", "believed"],
-        ),
-        ("tables", &["fit", "predict", "hold_back"]),
-        ("tables.hold_back", &["column", "from", "to"]),
-        (
-            "columns",
-            &[
-                "force",
-                "time",
-                "feed",
-                "speed",
-                "speed_under_load",
-                "area",
-                "wear",
-                "cumulate_wear",
-                "volume",
-                "weight",
-            ],
-        ),
-        ("columns.*", &["name", "unit", "where_0", "scatter_percent"]),
-        (
-            "believed",
-            &[
-                "law",
-                "reference_volume_mm3",
-                "reference_force_n",
-                "reference_time_s",
-                "reference_feed_mm_per_s",
-                "reference_speed",
-                "reference_area_mm2",
-                "force_exponent",
-                "time_exponent",
-                "speed_exponent",
-                "area_exponent",
-                "threshold_force_n",
-                "speed_sag_per_n",
-                "wear_rate",
-            ],
-        ),
-    ];
-    sections
-        .map(|(table, keys)| (table.to_owned(), keys.to_vec()))
-        .to_vec()
-}
 
 /// Kind of a file, whatever else stands in it.
 #[derive(Deserialize)]
@@ -72,147 +24,140 @@ struct KindKeys {
     kind: Option<String>,
 }
 
-/// A table of runs: what a tool took off at which settings, and the law of removal that is believed.
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-struct FileKeys {
-    /// Version of the format.
-    #[expect(dead_code, reason = "checked by Document::new")]
-    #[schemars(range(min = 1, max = 1))]
-    schema: u32,
-    /// What the file is.
-    #[expect(dead_code, reason = "checked before the file is read as this")]
-    #[schemars(extend("const" = REMOVAL_TABLE))]
-    kind: String,
-    /// Name for people.
-    title: Option<String>,
-    /// Tables of runs, CSV with a header, from the file's folder.
-    tables: TablesKeys,
-    /// Which column is what.
-    columns: ColumnsKeys,
-    /// The law that is believed.
-    believed: BelievedKeys,
+impl Plain for FileKind {}
+
+/// The one kind of such a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+enum FileKind {
+    /// A table of runs.
+    RemovalTable,
 }
 
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-struct TablesKeys {
-    /// Tables to diagnose from.
-    #[schemars(length(min = 1))]
-    fit: Vec<PathBuf>,
-    /// Tables to be predicted once the law is fitted.
-    #[serde(default)]
-    predict: Vec<PathBuf>,
+impl Plain for Law {}
+
+/// Law of removal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+enum Law {
+    /// In proportion to force, speed and time.
+    Preston,
+    /// The same above a threshold force.
+    Threshold,
+    /// Powers of them.
+    Power,
+}
+
+keys! {
+    /// A table of runs: what a tool took off at which settings, and the nominal law of removal.
+    struct FileKeys {
+        /// version of the format
+        schema: u32 = "schema" in 1..=1;
+        /// what the file is
+        kind: FileKind = "kind";
+        /// name for people
+        title: Option<String> = "title";
+        /// tables of runs, CSV with a header, from the file's folder
+        tables: TablesKeys = "tables";
+        /// which column is what
+        columns: ColumnsKeys = "columns";
+        /// the nominal law
+        believed: BelievedKeys = "believed";
+    }
+
+    /// `[tables]`.
+    struct TablesKeys {
+        /// tables to diagnose from
+        fit: Vec<PathBuf> = "fit", being "at least one";
+        /// tables to be predicted once the law is fitted
+        predict: Option<Vec<PathBuf>> = "predict";
+        /// rows of the tables to fit that are kept back, to be predicted
+        hold_back: Option<HoldBack> = "hold_back";
+    }
+
     /// Rows of the tables to fit that are kept back, to be predicted.
-    hold_back: Option<HoldBack>,
-}
+    pub struct HoldBack {
+        /// column
+        column: String = "column";
+        /// from this value on, in the column's unit
+        from: f64 = "from";
+        /// up to this one
+        to: f64 = "to";
+    }
 
-/// Rows of the tables to fit that are kept back, to be predicted.
-#[derive(Debug, Clone, PartialEq, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct HoldBack {
-    /// Column.
-    pub column: String,
-    /// From this value on, in the column's unit.
-    pub from: f64,
-    /// Up to this one.
-    pub to: f64,
-}
+    /// `[columns]`.
+    struct ColumnsKeys {
+        /// normal force
+        force: ColumnKeys = "force";
+        /// grinding time, of a tool that rests; none beside `feed`
+        time: Option<ColumnKeys> = "time";
+        /// feed, of a tool that moves; none beside `time`
+        feed: Option<ColumnKeys> = "feed";
+        /// speed of the tool, in one unit throughout
+        speed: Option<ColumnKeys> = "speed";
+        /// whether the speed is that under load; false: as set without load, which may sag
+        speed_under_load: bool = "speed_under_load", or true;
+        /// contact area
+        area: Option<ColumnKeys> = "area";
+        /// wear before the run, in any unit
+        wear: Option<ColumnKeys> = "wear";
+        /// whether the wear is the sum of force x time x speed of the rows before, each table beginning with a new tool
+        cumulate_wear: bool = "cumulate_wear", or false;
+        /// volume that came off
+        volume: ColumnKeys = "volume";
+        /// column that is 0 of rows that count less
+        weight: Option<WeightKeys> = "weight";
+    }
 
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-struct ColumnsKeys {
-    /// Normal force.
-    force: ColumnKeys,
-    /// Grinding time, of a tool that rests; none beside `feed`.
-    time: Option<ColumnKeys>,
-    /// Feed, of a tool that moves; none beside `time`.
-    feed: Option<ColumnKeys>,
-    /// Speed of the tool, in one unit throughout.
-    speed: Option<ColumnKeys>,
-    /// Whether the speed is that under load; false: as set without load, which may sag.
-    #[schemars(extend("default" = true))]
-    speed_under_load: Option<bool>,
-    /// Contact area.
-    area: Option<ColumnKeys>,
-    /// Wear before the run, in any unit.
-    wear: Option<ColumnKeys>,
-    /// Whether the wear is the sum of force x time x speed of the rows before, each table beginning with a new tool.
-    #[serde(default)]
-    cumulate_wear: bool,
-    /// Volume that came off.
-    volume: ColumnKeys,
-    /// Column that is 0 of rows that count less.
-    weight: Option<WeightKeys>,
-}
+    /// A column.
+    struct ColumnKeys {
+        /// name in the header
+        name: String = "name";
+        /// unit of its values
+        unit: Option<String> = "unit";
+        /// standard deviation of a volume, as far as it is known of how it is measured [%]
+        scatter: Option<f64> = "scatter_percent" in 0..=100, shown "0";
+    }
 
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-struct ColumnKeys {
-    /// Name in the header.
-    name: String,
-    /// Unit of its values.
-    unit: Option<String>,
-    /// Standard deviation of a volume, as far as it is known of how it is measured [%].
-    #[schemars(range(min = 0, max = 100), extend("default" = 0))]
-    scatter_percent: Option<f64>,
-}
+    /// `[columns.weight]`.
+    struct WeightKeys {
+        /// name in the header
+        name: String = "name";
+        /// weight of rows where it is 0; of the others 1
+        where_0: f64 = "where_0" in 0.01..=1.0;
+    }
 
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-struct WeightKeys {
-    /// Name in the header.
-    name: String,
-    /// Weight of rows where it is 0; of the others 1.
-    #[schemars(range(min = 0.01, max = 1))]
-    where_0: f64,
-}
-
-#[derive(Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-struct BelievedKeys {
-    /// "preston": in proportion to force, speed and time; "threshold": the same above a threshold force; "power": powers of them.
-    #[schemars(extend("enum" = LAWS))]
-    law: String,
-    /// Volume that comes off at the reference settings [mm3]; left out: to be fitted.
-    #[schemars(range(min = 1e-9, max = 1e9))]
-    reference_volume_mm3: Option<f64>,
-    /// Force at which that comes off [N]; left out: the mean of the table, as those below.
-    #[schemars(range(min = 1e-9, max = 1e9))]
-    reference_force_n: Option<f64>,
-    /// Time in which that comes off [s].
-    #[schemars(range(min = 1e-9, max = 1e9))]
-    reference_time_s: Option<f64>,
-    /// Feed at which that comes off [mm/s].
-    #[schemars(range(min = 1e-9, max = 1e9))]
-    reference_feed_mm_per_s: Option<f64>,
-    /// Speed at which that comes off, in the unit of its column.
-    #[schemars(range(min = 1e-9, max = 1e9))]
-    reference_speed: Option<f64>,
-    /// Contact area at which that comes off [mm2].
-    #[schemars(range(min = 1e-9, max = 1e9))]
-    reference_area_mm2: Option<f64>,
-    /// Exponent of the force; needed with "power".
-    #[schemars(range(min = -5, max = 5), extend("default" = 1))]
-    force_exponent: Option<f64>,
-    /// Exponent of the time, or of one over the feed.
-    #[schemars(range(min = -5, max = 5), extend("default" = 1))]
-    time_exponent: Option<f64>,
-    /// Exponent of the speed.
-    #[schemars(range(min = -5, max = 5), extend("default" = 1))]
-    speed_exponent: Option<f64>,
-    /// Exponent of the contact area.
-    #[schemars(range(min = -5, max = 5), extend("default" = 0))]
-    area_exponent: Option<f64>,
-    /// Force below which nothing comes off [N]; needed with "threshold".
-    #[schemars(range(min = 0, max = 1e5), extend("default" = 0))]
-    threshold_force_n: Option<f64>,
-    /// Share of the speed that is lost per force [1/N].
-    #[schemars(range(min = 0, max = 10), extend("default" = 0))]
-    speed_sag_per_n: Option<f64>,
-    /// Natural logarithm of the volume that is lost per wear, in the unit of its column.
-    #[schemars(range(min = 0, max = 1e9), extend("default" = 0))]
-    wear_rate: Option<f64>,
+    /// `[believed]`: the nominal law.
+    struct BelievedKeys {
+        /// in proportion to force, speed and time; the same above a threshold force; powers of them
+        law: Law = "law";
+        /// volume that comes off at the reference settings; left out: to be fitted
+        volume: Option<f64> = "reference_volume_mm3" in 1e-9..=1e9;
+        /// force at which that comes off; left out: the mean of the table, as those below
+        force: Option<f64> = "reference_force_n" in 1e-9..=1e9;
+        /// time in which that comes off
+        time: Option<f64> = "reference_time_s" in 1e-9..=1e9;
+        /// feed at which that comes off
+        feed: Option<f64> = "reference_feed_mm_per_s" in 1e-9..=1e9;
+        /// speed at which that comes off, in the unit of its column
+        speed: Option<f64> = "reference_speed" in 1e-9..=1e9;
+        /// contact area at which that comes off
+        area: Option<f64> = "reference_area_mm2" in 1e-9..=1e9;
+        /// exponent of the force; needed with "power"
+        force_exponent: Option<f64> = "force_exponent" in -5..=5, shown "1";
+        /// exponent of the time, or of one over the feed
+        time_exponent: f64 = "time_exponent" in -5..=5, or 1.0;
+        /// exponent of the speed
+        speed_exponent: f64 = "speed_exponent" in -5..=5, or 1.0;
+        /// exponent of the contact area
+        area_exponent: f64 = "area_exponent" in -5..=5, or 0.0;
+        /// force below which nothing comes off; needed with "threshold"
+        threshold: Option<f64> = "threshold_force_n" in 0.0..=1e5, shown "0";
+        /// share of the speed that is lost per force [1/N]
+        sag: f64 = "speed_sag_per_n" in 0..=10, or 0.0;
+        /// natural logarithm of the volume that is lost per wear, in the unit of its column
+        wear: f64 = "wear_rate" in 0.0..=1e9, or 0.0;
+    }
 }
 
 /// A column and its unit.
@@ -296,8 +241,8 @@ pub fn is_removal_table(path: &Path) -> bool {
     let Ok(text) = read_text(path) else {
         return false;
     };
-    let kind = Document::new(path, &text, u32::MAX)
-        .and_then(|document| document.parse::<KindKeys>(&sections()));
+    let kind =
+        Document::new(path, &text, u32::MAX).and_then(|document| document.parse::<KindKeys>(&[]));
     kind.is_ok_and(|keys| keys.kind.as_deref() == Some(REMOVAL_TABLE))
 }
 
@@ -308,7 +253,7 @@ pub fn is_removal_table(path: &Path) -> bool {
 pub fn load_removal_table(path: &Path) -> Result<RemovalTableFile, ScenarioError> {
     let text = read_text(path)?;
     let document = Document::new(path, &text, SCHEMA)?;
-    let keys: FileKeys = document.parse(&sections())?;
+    let keys: FileKeys = document.read()?;
     let tables = Section::new(&document, "tables");
     if keys.tables.fit.is_empty() {
         return Err(tables.refuse("fit", "empty".into(), "the tables to diagnose from".into()));
@@ -333,38 +278,24 @@ pub fn load_removal_table(path: &Path) -> Result<RemovalTableFile, ScenarioError
             .map(|keys| column(&columns, key, keys, units))
             .transpose()
     };
-    let weight = match keys.columns.weight {
-        None => None,
-        Some(weight) => {
-            let section = Section::new(&document, "columns.weight");
-            Some((
-                weight.name,
-                section.number("where_0", weight.where_0, 0.01..=1.0)?,
-            ))
-        }
-    };
     let believed = believed(&document, &keys.believed, is_feed)?;
     let speed = optional("speed", &keys.columns.speed, &SPEEDS)?;
     Ok(RemovalTableFile {
         title: keys.title.unwrap_or_default(),
         fit: keys.tables.fit,
-        predict: keys.tables.predict,
+        predict: keys.tables.predict.unwrap_or_default(),
         hold_back: keys.tables.hold_back,
         force: column(&columns, "force", &keys.columns.force, &FORCES)?,
         time,
         is_feed,
-        speed_under_load: speed.is_some() && keys.columns.speed_under_load.unwrap_or(true),
+        speed_under_load: speed.is_some() && keys.columns.speed_under_load,
         speed,
         area: optional("area", &keys.columns.area, &AREAS)?,
         wear: optional("wear", &keys.columns.wear, &[])?,
         cumulate_wear: keys.columns.cumulate_wear,
-        scatter: Section::new(&document, "columns.volume").number(
-            "scatter_percent",
-            keys.columns.volume.scatter_percent.unwrap_or(0.0),
-            0.0..=100.0,
-        )? / 100.0,
+        scatter: keys.columns.volume.scatter.unwrap_or(0.0) / 100.0,
         volume: column(&columns, "volume", &keys.columns.volume, &VOLUMES)?,
-        weight,
+        weight: (keys.columns.weight).map(|weight| (weight.name, weight.where_0)),
         believed,
         path: path.to_owned(),
         text: text.clone(),
@@ -374,7 +305,7 @@ pub fn load_removal_table(path: &Path) -> Result<RemovalTableFile, ScenarioError
 /// Schema of the file.
 #[must_use]
 pub fn schema() -> Value {
-    let mut schema = plain_schema::<FileKeys>();
+    let mut schema = of_file::<FileKeys>("A table of runs of idc");
     let columns = &mut schema["properties"]["columns"]["properties"];
     let units: [(&str, &[(&str, f64)]); 7] = [
         ("force", &FORCES),
@@ -402,8 +333,6 @@ pub fn schema() -> Value {
     schema
 }
 
-/// Words for a law.
-const LAWS: [&str; 3] = ["preston", "threshold", "power"];
 const FORCES: [(&str, f64); 2] = [("N", 1.0), ("kN", 1e3)];
 const TIMES: [(&str, f64); 3] = [("s", 1.0), ("ms", 1e-3), ("min", 60.0)];
 const FEEDS: [(&str, f64); 4] = [
@@ -424,7 +353,7 @@ fn column(
     units: &[(&str, f64)],
 ) -> Result<TableColumn, ScenarioError> {
     columns.text(&format!("{key}.name"), &keys.name)?;
-    if keys.scatter_percent.is_some() && key != "volume" {
+    if keys.scatter.is_some() && key != "volume" {
         let reason = "the scatter that counts is that of the volume".to_owned();
         return Err(columns.misplaced(&format!("{key}.scatter_percent"), reason));
     }
@@ -459,58 +388,35 @@ fn believed(
     is_feed: bool,
 ) -> Result<BelievedRemoval, ScenarioError> {
     let section = Section::new(document, "believed");
-    let needed: &[(&str, bool)] = match keys.law.as_str() {
-        "preston" => &[],
-        "threshold" => &[("threshold_force_n", keys.threshold_force_n.is_some())],
-        "power" => &[("force_exponent", keys.force_exponent.is_some())],
-        other => {
-            let expected =
-                "\"preston\", \"threshold\" (with a threshold force) or \"power\" (with exponents)";
-            return Err(section.refuse("law", format!("{other:?}"), expected.into()));
-        }
+    let needed = match keys.law {
+        Law::Threshold if keys.threshold.is_none() => Some(("threshold_force_n", "threshold")),
+        Law::Power if keys.force_exponent.is_none() => Some(("force_exponent", "power")),
+        _ => None,
     };
-    if let Some((key, _)) = needed.iter().find(|(_, given)| !given) {
-        return Err(section.missing(key, &format!("it to be given of law = {:?}", keys.law)));
+    if let Some((key, law)) = needed {
+        return Err(section.missing(key, &format!("it to be given of law = {law:?}")));
     }
-    let positive = |key: &str, value: Option<f64>| {
-        value
-            .map(|value| section.number(key, value, 1e-9..=1e9))
-            .transpose()
-    };
-    let exponent = |key: &str, value: Option<f64>, usual: f64| {
-        section.number_or(key, value, usual, -5.0..=5.0)
-    };
-    let feed = positive("reference_feed_mm_per_s", keys.reference_feed_mm_per_s)?;
-    let time = positive("reference_time_s", keys.reference_time_s)?;
-    let volume = positive("reference_volume_mm3", keys.reference_volume_mm3)?;
-    let force = positive("reference_force_n", keys.reference_force_n)?;
-    if volume.is_some() && force.is_none() {
+    if keys.volume.is_some() && keys.force.is_none() {
         let expected = "the settings at which the tool takes off `reference_volume_mm3`";
         return Err(section.missing("reference_force_n", expected));
     }
     Ok(BelievedRemoval {
-        volume,
-        force,
-        time: if is_feed {
-            feed.map(|feed| 1.0 / feed)
-        } else {
-            time
+        volume: keys.volume,
+        force: keys.force,
+        time: match is_feed {
+            true => keys.feed.map(|feed| 1.0 / feed),
+            false => keys.time,
         },
-        speed: positive("reference_speed", keys.reference_speed)?,
-        area: positive("reference_area_mm2", keys.reference_area_mm2)?,
+        speed: keys.speed,
+        area: keys.area,
         exponents: [
-            exponent("force_exponent", keys.force_exponent, 1.0)?,
-            exponent("time_exponent", keys.time_exponent, 1.0)?,
-            exponent("speed_exponent", keys.speed_exponent, 1.0)?,
-            exponent("area_exponent", keys.area_exponent, 0.0)?,
+            keys.force_exponent.unwrap_or(1.0),
+            keys.time_exponent,
+            keys.speed_exponent,
+            keys.area_exponent,
         ],
-        threshold: section.number_or(
-            "threshold_force_n",
-            keys.threshold_force_n,
-            0.0,
-            0.0..=1e5,
-        )?,
-        sag: section.number_or("speed_sag_per_n", keys.speed_sag_per_n, 0.0, 0.0..=10.0)?,
-        wear: section.number_or("wear_rate", keys.wear_rate, 0.0, 0.0..=1e9)?,
+        threshold: keys.threshold.unwrap_or(0.0),
+        sag: keys.sag,
+        wear: keys.wear,
     })
 }

@@ -36,6 +36,7 @@ pub(super) mod tests;
 mod values;
 
 pub use improved::{Improved, improved_text};
+pub(super) use keys::{PartKeys, RecordingsKeys, SharesKeys};
 pub use known::{FREQUENCY_NAME, Known, coefficient_name, of_term};
 pub(super) use number::NUMBER_OR_TABLE;
 pub(super) use quantities::{blank, described_numbers};

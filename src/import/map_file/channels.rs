@@ -87,8 +87,8 @@ pub(super) fn channel_map(
         frame: keys.frame.clone(),
         unit,
         gain: gain(&section, keys.gain)?,
-        offset: section.number_or("offset", keys.offset, 0.0, -1e12..=1e12)?,
-        reversed: keys.reversed.unwrap_or(false),
+        offset: keys.offset,
+        reversed: keys.reversed,
         pressure: keys.pressure.map(|pressure| match pressure {
             PressureKey::Gauge => Pressure::Gauge,
             PressureKey::Absolute => Pressure::Absolute,
@@ -97,15 +97,12 @@ pub(super) fn channel_map(
     })
 }
 
-fn gain(section: &Section<'_>, given: Option<f64>) -> Result<f64, ScenarioError> {
-    match given {
-        Some(gain) if gain == 0.0 || !gain.is_finite() => Err(section.refuse(
-            "gain",
-            gain.to_string(),
-            "a number other than 0; `reversed = true` for the other sign".to_owned(),
-        )),
-        given => Ok(given.unwrap_or(1.0)),
+fn gain(section: &Section<'_>, gain: f64) -> Result<f64, ScenarioError> {
+    if gain == 0.0 || !gain.is_finite() {
+        let expected = "a number other than 0; `reversed = true` for the other sign".to_owned();
+        return Err(section.refuse("gain", gain.to_string(), expected));
     }
+    Ok(gain)
 }
 
 /// A unit of one of these kinds, or of any.

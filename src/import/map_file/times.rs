@@ -54,9 +54,6 @@ pub(super) fn time_map(
             "with a `unit` or a sample rate the times are numbers, and no stamps".to_owned();
         return Err(section.misplaced(key, reason));
     }
-    if let Some(year) = keys.year {
-        section.count("year", year, 1970..=2200)?;
-    }
     let mark = |text: &String| single(&section, "thousands_mark", text, "such as \".\" or \"'\"");
     Ok(TimeMap {
         column: keys.column.0.clone(),

@@ -5,7 +5,8 @@ use std::sync::LazyLock;
 
 use serde::Deserialize;
 
-use super::super::sections::keys;
+use super::super::keys::keys;
+use super::super::sections::keys as names_of;
 use super::entry::Entry;
 use super::flange::FlangeKeys;
 use super::known::KnownKeys;
@@ -49,40 +50,42 @@ pub(super) struct RigKeys {
     pub flange: Option<FlangeKeys>,
 }
 
-/// `[rig]`: how much of the device there is.
-#[derive(Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct PartKeys {
-    pub chain: Option<String>,
-}
+keys! {
+    /// `[rig]`: how much of the device there is.
+    pub(in super::super) struct PartKeys: Default {
+        /// how much of the device there is
+        chain: Option<String> = "chain", shown "whole";
+    }
 
-/// `[shares]`: identities of parts that other rigs may have too, a serial number or a name.
-#[derive(Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct SharesKeys {
-    pub cylinder: Option<String>,
-    pub force_sensor: Option<String>,
-    pub regulator: Option<String>,
-}
+    /// `[shares]`: parts that other rigs may have too: those that state the same identity have the same part, and `idc diagnose --all` finds one value for it.
+    pub(in super::super) struct SharesKeys: Default {
+        /// identity of the cylinder, such as its serial number
+        cylinder: Option<String> = "cylinder";
+        /// identity of the load cell
+        force_sensor: Option<String> = "force_sensor";
+        /// identity of the pressure regulator
+        regulator: Option<String> = "regulator";
+    }
 
-/// `[recordings]`.
-#[derive(Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct RecordingsKeys {
-    #[serde(default)]
-    pub fit: Vec<String>,
-    pub predict: Option<String>,
-    #[serde(default)]
-    pub force_ramp: Vec<ForceRampKeys>,
-}
+    /// `[recordings]`.
+    pub(in super::super) struct RecordingsKeys: Default {
+        /// recordings beside this file to diagnose from; a star stands for all that fit
+        fit: Vec<String> = "fit";
+        /// recording that is kept back, to be predicted
+        predict: Option<String> = "predict";
+        /// force ramps of a contact flange; without one the whole desired force is set before contact
+        force_ramp: Vec<ForceRampKeys> = "force_ramp";
+    }
 
-/// `[[recordings.force_ramp]]`.
-#[derive(Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct ForceRampKeys {
-    pub recording: String,
-    pub before_contact_n: f64,
-    pub time_s: f64,
+    /// `[[recordings.force_ramp]]`.
+    pub(in super::super) struct ForceRampKeys {
+        /// recording that it is of; a star stands for all that fit
+        recording: String = "recording";
+        /// force that a contact flange is set to before contact
+        before_contact: f64 = "before_contact_n" in 0.0..=1e4;
+        /// time from contact until the desired force is set
+        time: f64 = "time_s" in 0..=100;
+    }
 }
 
 impl RigKeys {
@@ -115,16 +118,19 @@ static TABLES: LazyLock<Vec<(&str, Vec<&str>)>> = LazyLock::new(|| {
 /// Tables of a rig file with their keys.
 pub(super) fn sections() -> Vec<(String, Vec<&'static str>)> {
     let mut sections = vec![
-        ("".to_owned(), keys::<RigKeys>().to_vec()),
-        ("rig".to_owned(), keys::<PartKeys>().to_vec()),
-        ("recordings".to_owned(), keys::<RecordingsKeys>().to_vec()),
-        ("shares".to_owned(), keys::<SharesKeys>().to_vec()),
-        ("known".to_owned(), keys::<KnownKeys>().to_vec()),
-        ("flange".to_owned(), keys::<FlangeKeys>().to_vec()),
+        ("".to_owned(), names_of::<RigKeys>().to_vec()),
+        ("rig".to_owned(), names_of::<PartKeys>().to_vec()),
+        (
+            "recordings".to_owned(),
+            names_of::<RecordingsKeys>().to_vec(),
+        ),
+        ("shares".to_owned(), names_of::<SharesKeys>().to_vec()),
+        ("known".to_owned(), names_of::<KnownKeys>().to_vec()),
+        ("flange".to_owned(), names_of::<FlangeKeys>().to_vec()),
         ("flange.fit".to_owned(), FlangeModel::NAMES.to_vec()),
         (
             "recordings.force_ramp".to_owned(),
-            keys::<ForceRampKeys>().to_vec(),
+            names_of::<ForceRampKeys>().to_vec(),
         ),
     ];
     sections.extend(
@@ -141,6 +147,7 @@ pub(super) fn sections() -> Vec<(String, Vec<&'static str>)> {
         "contact.*",
         "sensors.*",
     ];
-    sections.extend(with_accuracy.map(|tables| (tables.to_owned(), keys::<NumberKeys>().to_vec())));
+    sections
+        .extend(with_accuracy.map(|tables| (tables.to_owned(), names_of::<NumberKeys>().to_vec())));
     sections
 }

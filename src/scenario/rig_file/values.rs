@@ -5,9 +5,10 @@ use std::collections::BTreeMap;
 use super::super::check::{Section, checked, plain};
 use super::super::document::Document;
 use super::super::error::ScenarioError;
+use super::super::keys::Table;
 use super::super::suggestion::{advice, join};
 use super::super::units::Unit;
-use super::keys::{Numbers, RecordingsKeys, RigKeys, SharesKeys, sections};
+use super::keys::{ForceRampKeys, Numbers, RecordingsKeys, RigKeys, SharesKeys, sections};
 use super::number::Number;
 use super::quantities::{DRIFT, NUMBERS, SENSOR_KEYS, needs, split};
 use crate::plant::{Chain, PlantParameters, Quantity, registry};
@@ -332,12 +333,13 @@ pub(super) fn recordings(
         );
         return Err(section.refuse("force_ramp", found, expected));
     }
+    document.hold_ranges(&[("recordings.force_ramp".to_owned(), ForceRampKeys::keys())])?;
     let ramps = keys.force_ramp.iter().enumerate().map(|(index, ramp)| {
         let section = Section::new(document, format!("recordings.force_ramp[{index}]"));
         Ok(RecordingForceRamp {
             recording: section.text("recording", &ramp.recording)?,
-            before: section.number("before_contact_n", ramp.before_contact_n, 0.0..=1e4)?,
-            time: section.number("time_s", ramp.time_s, 0.0..=100.0)?,
+            before: ramp.before_contact,
+            time: ramp.time,
         })
     });
     Ok(Recordings {

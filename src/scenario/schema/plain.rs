@@ -4,6 +4,9 @@ use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde_json::Value;
 
+/// The dialect that editors for TOML know.
+pub(in crate::scenario) const DIALECT: &str = "http://json-schema.org/draft-07/schema#";
+
 /// A type's own schema, each table in its place and without what TOML does not have.
 pub(crate) fn plain_schema<T: JsonSchema>() -> Value {
     let settings = SchemaSettings::draft07().with(|settings| settings.inline_subschemas = true);

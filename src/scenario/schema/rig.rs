@@ -2,8 +2,9 @@
 
 use serde_json::{Map, Value, json};
 
-use super::super::rig_file::described_numbers;
-use super::described::DIALECT;
+use super::super::keys::Filled;
+use super::super::rig_file::{PartKeys, RecordingsKeys, SharesKeys, described_numbers};
+use super::plain::DIALECT;
 use crate::effects::candidates;
 use crate::plant::Chain;
 
@@ -21,19 +22,11 @@ pub fn schema() -> Value {
         "schema".to_owned(),
         json!({ "enum": [1, 2], "description": "Version of this format." }),
     );
-    tables.insert(
-        "rig".to_owned(),
-        json!({
-            "type": "object",
-            "properties": { "chain": {
-                "enum": chains,
-                "description": "How much of the device there is. Default: whole.",
-            } },
-            "additionalProperties": false,
-        }),
-    );
-    tables.insert("recordings".to_owned(), recordings());
-    tables.insert("shares".to_owned(), shares());
+    let mut part = PartKeys::schema();
+    part["properties"]["chain"]["enum"] = json!(chains);
+    tables.insert("rig".to_owned(), part);
+    tables.insert("recordings".to_owned(), RecordingsKeys::schema());
+    tables.insert("shares".to_owned(), SharesKeys::schema());
     let effects = Chain::ALL.into_iter().flat_map(candidates);
     tables.insert("effect".to_owned(), super::super::effects::schema(effects));
     tables.insert(
@@ -56,74 +49,6 @@ pub fn schema() -> Value {
         "required": ["schema"],
         "additionalProperties": false,
     })
-}
-
-/// `[recordings]`.
-fn recordings() -> Value {
-    json!({
-        "type": "object",
-        "properties": {
-            "fit": {
-                "type": "array",
-                "items": { "type": "string" },
-                "description": "Recordings beside this file to diagnose from; a star stands for all that fit.",
-            },
-            "predict": {
-                "type": "string",
-                "description": "Recording that is kept back, to be predicted.",
-            },
-            "force_ramp": {
-                "type": "array",
-                "items": {
-                    "type": "object",
-                    "properties": {
-                        "recording": {
-                            "type": "string",
-                            "description": "Recording that it is of; a star stands for all that fit.",
-                        },
-                        "before_contact_n": {
-                            "type": "number",
-                            "minimum": 0,
-                            "maximum": 1e4,
-                            "description": "Force that a contact flange is told before contact.",
-                        },
-                        "time_s": {
-                            "type": "number",
-                            "minimum": 0,
-                            "maximum": 100,
-                            "description": "Time from contact until the desired force is set.",
-                        },
-                    },
-                    "required": ["recording", "before_contact_n", "time_s"],
-                    "additionalProperties": false,
-                },
-                "description": "Force ramps of a contact flange; without one the whole desired force is set before contact.",
-            },
-        },
-        "additionalProperties": false,
-    })
-}
-
-/// `[shares]`.
-fn shares() -> Value {
-    let part = |text: &str| json!({ "type": "string", "description": text });
-    let mut table = table_of(Map::from_iter([
-        (
-            "cylinder".to_owned(),
-            part("Identity of the cylinder, such as its serial number."),
-        ),
-        (
-            "force_sensor".to_owned(),
-            part("Identity of the load cell."),
-        ),
-        (
-            "regulator".to_owned(),
-            part("Identity of the pressure regulator."),
-        ),
-    ]));
-    table["description"] =
-        "Parts that other rigs may have too: those that state the same identity have the same part, and `idc diagnose --all` finds one value for it.".into();
-    table
 }
 
 fn table_of(properties: Map<String, Value>) -> Value {

@@ -159,8 +159,8 @@ fn a_missing_key_is_named_with_its_table_and_unit() {
         ),
         (
             "[workpiece.edge]\nedge = 1\n",
-            "8:2",
-            "`workpiece.edge.edge` is missing, expected edge or loop, a number from `idc edges`",
+            "8:1",
+            "`workpiece.edge` is missing, expected a table [workpiece.edge]",
         ),
         (
             "edge = 1",
