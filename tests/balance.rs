@@ -13,7 +13,7 @@ fn balance(scenario: Scenario) -> (f64, f64) {
     let finished = run(scenario);
     let recording = &finished.recording;
     let span = recording.phase("follow").unwrap();
-    let parameters = &cell.scenario.device.parameters;
+    let parameters = &cell.setup.scenario.device.parameters;
     let areas = parameters.areas();
     let [force, p1, p2] = [
         schema::CONTACT_FORCE,
@@ -24,10 +24,11 @@ fn balance(scenario: Scenario) -> (f64, f64) {
     let (mut measured, mut expected, mut count) = (0.0, 0.0, 0.0);
     for i in recording.samples_in(span) {
         let axis = cell.plan.reference(recording.time()[i]).axis;
-        let gravity = cell.scenario.simulation.gravity.dot(axis);
+        let gravity = cell.setup.scenario.simulation.gravity.dot(axis);
         let gas = areas.gas_force(p1[i], p2[i], parameters.gas.atmosphere);
         measured += force[i];
-        expected += (gas + parameters.moving_mass * gravity) / cell.scenario.process.lean.cos();
+        expected +=
+            (gas + parameters.moving_mass * gravity) / cell.setup.scenario.process.lean.cos();
         count += 1.0;
     }
     (measured / count, expected / count)
@@ -67,7 +68,7 @@ fn without_gravity_in_the_balance_it_does_not_close() {
     scenario.workpiece.edge.end = Some(scenario.workpiece.edge.start + 0.05);
     let weight = {
         let cell = Cell::new(scenario.clone()).unwrap();
-        cell.scenario.device.parameters.moving_mass
+        cell.setup.scenario.device.parameters.moving_mass
             * cell.gravity_along(cell.plan.reference(5.0).axis)
     };
     let (measured, expected) = balance(scenario);

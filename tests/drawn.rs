@@ -79,8 +79,8 @@ fn the_ball_that_is_drawn_rides_on_the_edge_and_links_hang_on_their_joints() {
     let ball = shapes.next().unwrap().shapes.len();
     let (centre, _) = poses(&store, &format!("/cell/device/slide/part_{ball}"))[0];
     let follow = run.recording.phase("follow").unwrap();
-    let radius = cell.scenario.device.tool_radius;
-    let stiffness = cell.scenario.contact.stiffness;
+    let radius = cell.setup.scenario.device.tool_radius;
+    let stiffness = cell.setup.scenario.contact.stiffness;
     let mut seen = 0;
     for (frame, time) in scene.frame_times.iter().enumerate() {
         if *time > follow.start && *time < follow.end {
@@ -94,8 +94,13 @@ fn the_ball_that_is_drawn_rides_on_the_edge_and_links_hang_on_their_joints() {
     }
     assert!(seen > 20);
 
-    for (index, joint) in cell.arm.chain.joints.iter().enumerate() {
-        let of = |index: usize| poses(&store, &format!("/cell/arm/{}", cell.arm.link_names[index]));
+    for (index, joint) in cell.setup.arm.chain.joints.iter().enumerate() {
+        let of = |index: usize| {
+            poses(
+                &store,
+                &format!("/cell/arm/{}", cell.setup.arm.link_names[index]),
+            )
+        };
         let (before, own) = (of(index), of(index + 1));
         for (frame, (place, _)) in own.iter().enumerate() {
             let (from, rotation) = before[frame.min(before.len() - 1)];
@@ -163,7 +168,7 @@ fn what_is_checked_for_collisions_is_where_the_links_and_obstacles_are() {
     let file = write("recording.rrd", &scene);
     let store = read(&file);
 
-    for (index, name) in cell.arm.link_names.iter().enumerate() {
+    for (index, name) in cell.setup.arm.link_names.iter().enumerate() {
         let (corners, frame) = mesh(&store, &format!("/cell/collision/{name}"));
         let own = cell
             .arm
@@ -193,7 +198,7 @@ fn what_is_checked_for_collisions_is_where_the_links_and_obstacles_are() {
     // The spindle ends at the ball's centre.
     let end = corners.iter().map(|corner| corner.z).fold(0.0, f64::max);
     assert!(
-        (end - cell.scenario.device.tool_centre).abs() < 1e-6,
+        (end - cell.setup.scenario.device.tool_centre).abs() < 1e-6,
         "{end}"
     );
     let (corners, frame) = mesh(&store, "/cell/collision/tool\\ rack");
@@ -325,8 +330,8 @@ fn the_edge_is_drawn_before_and_after_in_the_colours_of_its_error() {
     let store = read(&file);
 
     let stations = stations(&profile.text());
-    let part = cell.part.world_from_part;
-    let edge: Vec<DVec3> = (cell.part.edge.points.iter())
+    let part = cell.setup.part.world_from_part;
+    let edge: Vec<DVec3> = (cell.setup.part.edge.points.iter())
         .map(|point| part.transform_point(*point))
         .collect();
     let on_edge = |point: DVec3| distance(point, &edge);

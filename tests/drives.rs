@@ -122,14 +122,14 @@ fn the_housing_hangs_on_the_flange_and_loads_every_joint_by_its_lever() {
         loaded.device.housing_mass = housing;
         loaded.device.housing_centre_of_mass = 0.06;
         let cell = Cell::new(loaded).unwrap();
-        let count = cell.arm_with_slide.len();
+        let count = cell.setup.arm_with_slide.len();
         let mut position = cell.plan.reference(0.0).position;
         position[count - 1] = 0.02;
         let (still, mut torque) = ([0.0; MAX_JOINTS], [0.0; MAX_JOINTS]);
-        let base = cell.scenario.arm.world_from_base;
-        let gravity = cell.scenario.simulation.gravity;
+        let base = cell.setup.scenario.arm.world_from_base;
+        let gravity = cell.setup.scenario.simulation.gravity;
         inverse_dynamics(
-            &cell.arm_with_slide,
+            &cell.setup.arm_with_slide,
             base.rotation,
             gravity,
             &position[..count],
@@ -141,9 +141,9 @@ fn the_housing_hangs_on_the_flange_and_loads_every_joint_by_its_lever() {
     };
     let (_, _, without) = torques(0.0);
     let (cell, position, with) = torques(2.5);
-    let chain = &cell.arm.chain;
+    let chain = &cell.setup.arm.chain;
     let mut links = [DPose3::IDENTITY; MAX_JOINTS];
-    let base = cell.scenario.arm.world_from_base;
+    let base = cell.setup.scenario.arm.world_from_base;
     link_poses(
         chain,
         base,
@@ -152,7 +152,7 @@ fn the_housing_hangs_on_the_flange_and_loads_every_joint_by_its_lever() {
     );
     let flange = links[chain.len() - 1] * chain.tip_from_last;
     let centre = flange.transform_point(DVec3::new(0.0, 0.0, 0.06));
-    let weight = cell.scenario.simulation.gravity * 2.5;
+    let weight = cell.setup.scenario.simulation.gravity * 2.5;
     for (joint, link) in links.iter().enumerate().take(chain.len()) {
         let axis = link.rotation * chain.joints[joint].axis;
         let expected = -axis.dot((centre - link.translation).cross(weight));

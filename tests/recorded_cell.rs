@@ -111,7 +111,7 @@ fn job(mut nominal: Scenario, program: &Program) -> Scenario {
 /// The project's own plan of a program.
 fn commands(program: &Program) -> Commands {
     let cell = Cell::new(job(scenario("plate_edge_ideal"), program)).unwrap();
-    let axes = cell.arm.chain.len();
+    let axes = cell.setup.arm.chain.len();
     let count = (cell.plan.duration() * RATE) as usize;
     let mut made = Commands {
         time: Vec::new(),

@@ -32,11 +32,11 @@ fn compare(name: &str, rounds: usize) -> Result<(), Box<dyn Error>> {
     let watched = load(&project.join(format!("scenarios/{name}.toml")))?;
     let mut free = watched.clone();
     let with = Cell::new(watched.clone())?;
-    free.collision.allowed_pairs = with.collision.checked().collect();
+    free.setup.collision.allowed_pairs = with.setup.collision.checked().collect();
     let mut without = Cell::new(watched.clone())?;
-    without.collision = Cell::new(free.clone())?.collision;
-    let pairs = with.collision.checked().count();
-    assert_eq!(without.collision.checked().count(), 0);
+    without.setup.collision = Cell::new(free.clone())?.setup.collision;
+    let pairs = with.setup.collision.checked().count();
+    assert_eq!(without.setup.collision.checked().count(), 0);
 
     let mut runs: [Vec<f64>; 2] = Default::default();
     let mut checks: [Vec<f64>; 2] = Default::default();

@@ -49,7 +49,7 @@ pub struct Following<'a> {
 impl<'a> Following<'a> {
     /// Runs up to the following phase.
     pub fn new(cell: &'a Cell) -> Self {
-        let step = cell.scenario.simulation.step;
+        let step = cell.setup.scenario.simulation.step;
         let (start, end) = follow_span(cell);
         let first = ((start + LEAD) / step).ceil() as usize;
         let last = (end / step).floor() as usize;
@@ -96,8 +96,8 @@ impl<'a> Following<'a> {
 
 /// Constant joint forces with which the reference's motion carries the desired contact force: axes, then the slide [N m, N].
 pub fn feed_forward(cell: &Cell, reference: &Reference) -> [f64; MAX_JOINTS] {
-    let chain = &cell.arm_with_slide;
-    let scenario = &cell.scenario;
+    let chain = &cell.setup.arm_with_slide;
+    let scenario = &cell.setup.scenario;
     let (count, base) = (chain.len(), scenario.arm.world_from_base);
     let mut position = reference.position;
     position[count - 1] = scenario.process.working_stroke;
@@ -125,11 +125,11 @@ pub fn feed_forward(cell: &Cell, reference: &Reference) -> [f64; MAX_JOINTS] {
 
 /// Stiffness and damping of each axis's servo, as the simulation sets them [N m/rad, N m s/rad].
 pub fn servo_gains(cell: &Cell) -> Vec<(f64, f64)> {
-    let servo = &cell.scenario.arm.servo;
+    let servo = &cell.setup.scenario.arm.servo;
     let frequency = servo.natural_frequency * std::f64::consts::TAU;
-    let chain = &cell.arm_with_slide;
+    let chain = &cell.setup.arm_with_slide;
     let mut position = cell.plan.start();
-    position.push(cell.scenario.process.working_stroke);
+    position.push(cell.setup.scenario.process.working_stroke);
     let mut masses = nalgebra::DMatrix::zeros(chain.len(), chain.len());
     mass_matrix(chain, &position, &mut masses);
     let gains = |inertia: f64| {
@@ -145,10 +145,10 @@ pub fn servo_gains(cell: &Cell) -> Vec<(f64, f64)> {
 
 /// The rigid-body world alone, holding the arm where following is under way; the ball on the edge, or `lift` [m] off it.
 pub fn holding_world(cell: &Cell, lift: f64) -> Holding {
-    let scenario = &cell.scenario;
+    let scenario = &cell.setup.scenario;
     let mut world = World::new(&WorldDescription::of(cell));
     let reference = cell.plan.reference(follow_span(cell).0 + LEAD);
-    let count = cell.arm_with_slide.len();
+    let count = cell.setup.arm_with_slide.len();
     let stroke = scenario.process.working_stroke - lift;
     let mut positions = reference.position[..count].to_vec();
     positions[count - 1] = stroke;
@@ -179,7 +179,7 @@ pub fn holding_world(cell: &Cell, lift: f64) -> Holding {
     let mut holding = Holding {
         world,
         laws,
-        contact: cell.plant.contact,
+        contact: cell.setup.plant.contact,
         touches: Vec::new(),
         pressed: Vec::new(),
     };

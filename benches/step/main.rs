@@ -120,7 +120,7 @@ fn compare(cell: &Cell, deburring: &Cell) -> Result<(), Box<dyn Error>> {
     println!(
         "deburred_edge / plate_edge_ideal: {slower:.3} times the time of a step, median of the rounds' ratios"
     );
-    let (force, desired) = (world.force(), cell.scenario.process.force);
+    let (force, desired) = (world.force(), cell.setup.scenario.process.force);
     println!(
         "the rigid bodies alone press with {force:.4} N of {desired} N, {:.4} mm deep",
         world.penetration() * 1e3
@@ -169,13 +169,13 @@ fn print_peer(cell: &Cell, rounds: &mut Rounds, peer: &Peer, last: Option<&peer:
         "MuJoCo / rigid bodies alone: {:.2} times the steps/s",
         median(&mut rounds.rigid_bodies_alone) / median(&mut rounds.mujoco)
     );
-    let desired = cell.scenario.process.force;
+    let desired = cell.setup.scenario.process.force;
     println!(
         "MuJoCo presses at rest with {:.4} N of {desired} N ({:+.4} %), {:.4} mm deep (F/k {:.4} mm)",
         ready.static_force,
         (ready.static_force / desired - 1.0) * 100.0,
         ready.penetration * 1e3,
-        desired / cell.scenario.contact.stiffness * 1e3,
+        desired / cell.setup.scenario.contact.stiffness * 1e3,
     );
     if let Some(round) = last {
         println!(

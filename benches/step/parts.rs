@@ -55,7 +55,7 @@ fn rigid_bodies(criterion: &mut Criterion, cell: &Cell) {
 }
 
 fn device(criterion: &mut Criterion, cell: &Cell) {
-    let scenario = &cell.scenario;
+    let scenario = &cell.setup.scenario;
     let device = &cell.device;
     let pressure = 1e5;
     let stroke = scenario.process.working_stroke;
@@ -82,7 +82,7 @@ fn device(criterion: &mut Criterion, cell: &Cell) {
 
 fn path_and_servo(criterion: &mut Criterion, cell: &Cell) {
     let (start, end) = follow_span(cell);
-    let step = cell.scenario.simulation.step;
+    let step = cell.setup.scenario.simulation.step;
     let mut group = criterion.benchmark_group("path and servo");
     let mut time = start;
     group.bench_function("reference", |bencher| {
@@ -95,11 +95,11 @@ fn path_and_servo(criterion: &mut Criterion, cell: &Cell) {
             cell.plan.reference(black_box(time))
         });
     });
-    let chain = &cell.arm_with_slide;
+    let chain = &cell.setup.arm_with_slide;
     let count = chain.len();
     let reference = cell.plan.reference(f64::midpoint(start, end));
-    let gravity = cell.scenario.simulation.gravity;
-    let base = cell.scenario.arm.world_from_base.rotation;
+    let gravity = cell.setup.scenario.simulation.gravity;
+    let base = cell.setup.scenario.arm.world_from_base.rotation;
     group.bench_function("inverse dynamics", |bencher| {
         bencher.iter(|| {
             let reference = black_box(&reference);
@@ -125,10 +125,10 @@ fn path_and_servo(criterion: &mut Criterion, cell: &Cell) {
 }
 
 fn contact_search(criterion: &mut Criterion, cell: &Cell) {
-    let surface = ContactSurface::new(&cell.part.mesh_in_world);
-    let reach = cell.scenario.device.tool_radius + 1e-3;
+    let surface = ContactSurface::new(&cell.setup.part.mesh_in_world);
+    let reach = cell.setup.scenario.device.tool_radius + 1e-3;
     let (start, end) = follow_span(cell);
-    let step = cell.scenario.simulation.step;
+    let step = cell.setup.scenario.simulation.step;
     // Places along the path, so that it is not always the same triangles.
     let count = ((end - start) / step) as usize;
     let centres: Vec<_> = (0..count)
@@ -136,7 +136,7 @@ fn contact_search(criterion: &mut Criterion, cell: &Cell) {
         .collect();
     let mut found = Vec::new();
     let mut group = criterion.benchmark_group("contact search");
-    let id = BenchmarkId::new("triangles", cell.part.mesh_in_world.triangles().len());
+    let id = BenchmarkId::new("triangles", cell.setup.part.mesh_in_world.triangles().len());
     group.bench_function(id, |bencher| {
         bencher.iter_custom(|rounds| {
             let clock = Instant::now();

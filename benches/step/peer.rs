@@ -74,7 +74,7 @@ impl Peer {
         let mut replies = BufReader::new(replies);
         writeln!(requests, "{}", scene(cell, steps)?).map_err(|error| error.to_string())?;
         let ready: Ready = reply(&mut replies)?;
-        let desired = cell.scenario.process.force;
+        let desired = cell.setup.scenario.process.force;
         if (ready.static_force / desired - 1.0).abs() > FORCE_TOLERANCE {
             let force = ready.static_force;
             return Err(format!(
@@ -115,22 +115,22 @@ fn reply<T: for<'a> Deserialize<'a>>(replies: &mut BufReader<ChildStdout>) -> Re
 
 /// The cell in the arm's base frame, as mujoco_peer.py reads it.
 fn scene(cell: &Cell, steps: usize) -> Result<Value, String> {
-    let scenario = &cell.scenario;
+    let scenario = &cell.setup.scenario;
     let device = &scenario.device;
     let base_from_world = scenario.arm.world_from_base.inverse();
-    let (low, high) = cell.part.mesh.bounds();
+    let (low, high) = cell.setup.part.mesh.bounds();
     let box_volume = (high - low).element_product();
-    if (cell.part.mesh.volume() / box_volume - 1.0).abs() > 1e-9 {
+    if (cell.setup.part.mesh.volume() / box_volume - 1.0).abs() > 1e-9 {
         return Err("only a part that is a box can be handed over".to_owned());
     }
-    let base_from_part = base_from_world * cell.part.world_from_part;
+    let base_from_part = base_from_world * cell.setup.part.world_from_part;
     let turned = base_from_part.rotation;
     let mass = device.parameters.moving_mass;
     let gains = servo_gains(cell);
     let follow = follow_span(cell).0;
     let step = scenario.simulation.step;
     let start = cell.plan.reference(follow);
-    let count = cell.arm_with_slide.len();
+    let count = cell.setup.arm_with_slide.len();
     let mut start_position = start.position[..count].to_vec();
     start_position[count - 1] = scenario.process.working_stroke;
     let rows: Vec<_> = (1..=steps)
@@ -189,7 +189,7 @@ struct Row {
 impl Row {
     fn at(cell: &Cell, time: f64, gains: &[(f64, f64)]) -> Self {
         let reference = cell.plan.reference(time);
-        let scenario = &cell.scenario;
+        let scenario = &cell.setup.scenario;
         let axes = gains.len();
         let mut applied = feed_forward(cell, &reference)[..=axes].to_vec();
         // MuJoCo compensates the arm's own weight itself.
@@ -197,7 +197,7 @@ impl Row {
         let base = scenario.arm.world_from_base.rotation;
         let gravity = scenario.simulation.gravity;
         gravity_torques(
-            &cell.arm.chain,
+            &cell.setup.arm.chain,
             base,
             gravity,
             &reference.position[..axes],

@@ -211,23 +211,28 @@ impl<'a> Trial<'a> {
         let known = notes.clone();
         drop(notes);
         // Those of its plan are another matter, of what its masses leave open, and of the step.
-        let step = cell.resolution.note(&cell.scenario).into_iter().count();
+        let step = cell
+            .resolution
+            .note(&cell.setup.scenario)
+            .into_iter()
+            .count();
         let planned = cell.plan.notes.len() + usize::from(cell.estimated.is_some()) + step;
-        let own = cell.notes.len().saturating_sub(planned);
+        let own = cell.setup.notes.len().saturating_sub(planned);
         let is_new = |note: &String| known.as_ref().is_some_and(|known| !known.contains(note));
-        if cell.notes[..own].iter().any(is_new) {
+        if cell.setup.notes[..own].iter().any(is_new) {
             return false;
         }
-        let steps = (cell.plan.duration() / cell.scenario.simulation.step).ceil();
+        let steps = (cell.plan.duration() / cell.setup.scenario.simulation.step).ceil();
         if !self.take(&self.steps, steps as usize) {
             return false;
         }
         let Some(outcome) = (self.runs)(cell) else {
             return false;
         };
-        let desired = cell.passes[0].force;
+        let desired = cell.setup.passes[0].force;
         let allowed = FORCE_KEPT * desired + friction;
-        let kept = |force: f64| cell.scenario.device.locked || (force - desired).abs() <= allowed;
+        let kept =
+            |force: f64| cell.setup.scenario.device.locked || (force - desired).abs() <= allowed;
         !outcome.stopped
             && outcome.torque.is_none_or(|share| share < SATURATED)
             && outcome.lost.is_none_or(|share| share <= CONTACT_LOST)

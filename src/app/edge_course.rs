@@ -14,7 +14,7 @@ const STATIONS: usize = 280;
 /// # Errors
 /// The recording lacks a channel.
 pub fn edge_course(cell: &Cell, recording: &Recording) -> Result<Vec<EdgeMoment>, RecordingError> {
-    let Some(removal) = &cell.scenario.removal else {
+    let Some(removal) = &cell.setup.scenario.removal else {
         return Ok(Vec::new());
     };
     let time = recording.time();
@@ -30,7 +30,7 @@ pub fn edge_course(cell: &Cell, recording: &Recording) -> Result<Vec<EdgeMoment>
     let Some(last) = cutting.last() else {
         return Ok(Vec::new());
     };
-    let mut edge = cell.part.edge_state.clone();
+    let mut edge = cell.setup.part.edge_state.clone();
     let every = edge.stations().len().div_ceil(STATIONS).max(1);
     let stations: Vec<usize> = (0..edge.stations().len()).step_by(every).collect();
     let moment = |sample: usize, states: &[EdgeStationState]| {

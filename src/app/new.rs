@@ -362,7 +362,7 @@ mod tests {
     fn each_is_what_our_own_readers_take() {
         let (_folder, file) = written(Kind::Cell);
         let cell = Cell::new(load(&file).unwrap()).unwrap();
-        assert_eq!(cell.scenario.process.force, 150.0);
+        assert_eq!(cell.setup.scenario.process.force, 150.0);
         let (_folder, file) = written(Kind::Rig);
         let rig = load_rig(&file).unwrap();
         assert_eq!((rig.fit.len(), rig.tolerances.len()), (1, 8));

@@ -37,7 +37,7 @@ pub fn scene_of(
 ) -> Result<Scene, RecordingError> {
     let mut scene = motion_of(cell, frames);
     for (index, body) in scene.bodies.iter_mut().enumerate() {
-        body.shapes.extend(visual_shapes(&cell.arm, index));
+        body.shapes.extend(visual_shapes(&cell.setup.arm, index));
     }
     scene.bodies.push(part(cell));
     scene.bodies.extend(obstacles(cell));
@@ -51,7 +51,7 @@ pub(super) fn motion_of(cell: &Cell, frames: &FrameLog) -> Scene {
     let mut bodies = arm(cell, frames);
     bodies.extend(device(cell, frames));
     Scene {
-        title: cell.scenario.title.clone(),
+        title: cell.setup.scenario.title.clone(),
         bodies,
         collision_shapes: Vec::new(),
         frame_times: frames.times.clone(),
@@ -68,8 +68,9 @@ pub(super) fn motion_of(cell: &Cell, frames: &FrameLog) -> Scene {
             })
             .collect(),
         limits: SceneLimits {
-            stroke: Some([0.0, cell.scenario.device.parameters.full_stroke]),
+            stroke: Some([0.0, cell.setup.scenario.device.parameters.full_stroke]),
             joint_torque: cell
+                .setup
                 .arm
                 .chain
                 .joints
@@ -81,13 +82,13 @@ pub(super) fn motion_of(cell: &Cell, frames: &FrameLog) -> Scene {
 }
 
 fn arm(cell: &Cell, frames: &FrameLog) -> Vec<SceneBody> {
-    let count = cell.arm.chain.len();
+    let count = cell.setup.arm.chain.len();
     (0..=count)
         .map(|index| SceneBody {
-            entity: arm_entity(&cell.arm.link_names[index]),
+            entity: arm_entity(&cell.setup.arm.link_names[index]),
             shapes: Vec::new(),
             world_from_body: match index {
-                0 => ScenePoses::Static(cell.scenario.arm.world_from_base),
+                0 => ScenePoses::Static(cell.setup.scenario.arm.world_from_base),
                 _ => {
                     ScenePoses::Moving(frames.links.iter().map(|links| links[index - 1]).collect())
                 }
@@ -135,10 +136,10 @@ fn geometry(shape: &VisualShape) -> SceneGeometry {
 }
 
 fn device(cell: &Cell, frames: &FrameLog) -> [SceneBody; 2] {
-    let last = cell.arm.chain.len() - 1;
-    let flange = |links: &Vec<DPose3>| links[last] * cell.arm.chain.tip_from_last;
+    let last = cell.setup.arm.chain.len() - 1;
+    let flange = |links: &Vec<DPose3>| links[last] * cell.setup.arm.chain.tip_from_last;
     device_bodies(
-        &cell.scenario.device,
+        &cell.setup.scenario.device,
         ScenePoses::Moving(frames.links.iter().map(flange).collect()),
         ScenePoses::Moving(frames.links.iter().map(|links| links[last + 1]).collect()),
     )
@@ -168,9 +169,9 @@ pub(super) fn device_bodies(
 
 /// What stands in the cell beside arm and part.
 fn obstacles(cell: &Cell) -> impl Iterator<Item = SceneBody> {
-    let obstacles = cell.scenario.collision.obstacles.iter().enumerate();
+    let obstacles = cell.setup.scenario.collision.obstacles.iter().enumerate();
     obstacles.filter_map(|(index, obstacle)| {
-        let body = (cell.collision.bodies()).find(|body| body.name == obstacle.name)?;
+        let body = (cell.setup.collision.bodies()).find(|body| body.name == obstacle.name)?;
         let shapes = body.solids.iter().map(|solid| {
             let (vertices, triangles) = solid.triangles();
             SceneShape {
@@ -192,7 +193,7 @@ fn obstacles(cell: &Cell) -> impl Iterator<Item = SceneBody> {
 
 /// What is checked for collisions, but for the floor, which would hide the cell: the part where it is believed to be.
 fn collision_shapes(cell: &Cell) -> Vec<CollisionShape> {
-    let checked = cell.collision.bodies_with_roles();
+    let checked = cell.setup.collision.bodies_with_roles();
     let shown = checked.filter(|(role, _)| *role != Role::Floor);
     shown.map(|(_, body)| collision_shape(cell, body)).collect()
 }
@@ -202,7 +203,7 @@ fn collision_shape(cell: &Cell, body: &Body) -> CollisionShape {
     let (moves_with, pose) = match body.mount {
         Mount::World(pose) => (None, pose),
         Mount::Link(joint) => {
-            let with = match cell.arm.link_names.get(joint + 1) {
+            let with = match cell.setup.arm.link_names.get(joint + 1) {
                 Some(link) => arm_entity(link),
                 None => SLIDE.to_owned(),
             };
@@ -230,12 +231,12 @@ fn part(cell: &Cell) -> SceneBody {
         shapes: vec![SceneShape {
             body_from_shape: DPose3::IDENTITY,
             geometry: SceneGeometry::Mesh {
-                vertices: cell.part.mesh.vertices().to_vec(),
-                triangles: cell.part.mesh.triangles().to_vec(),
+                vertices: cell.setup.part.mesh.vertices().to_vec(),
+                triangles: cell.setup.part.mesh.triangles().to_vec(),
             },
             colour: PART,
         }],
-        world_from_body: ScenePoses::Static(cell.part.world_from_part),
+        world_from_body: ScenePoses::Static(cell.setup.part.world_from_part),
     }
 }
 
@@ -252,27 +253,30 @@ pub(super) fn in_the_middle(cell: &Cell) -> Reference {
 /// How the tool stands across the edge in the middle of following, as a picture.
 pub(super) fn across_the_edge(cell: &Cell) -> String {
     let reference = in_the_middle(cell);
-    let place = cell.part.edge.at(reference.edge_length);
-    let turn = cell.scenario.workpiece.world_from_part.rotation;
+    let place = cell.setup.part.edge.at(reference.edge_length);
+    let turn = cell.setup.scenario.workpiece.world_from_part.rotation;
     cross_section(&CrossSection {
         tangent: reference.tangent,
         normals: [turn * place.normal_a, turn * place.normal_b],
         bisector: reference.normal,
         axis: reference.axis,
-        gravity: cell.scenario.simulation.gravity,
+        gravity: cell.setup.scenario.simulation.gravity,
     })
 }
 
 /// The edge before and after it was worked, where it really lies.
 #[must_use]
 pub fn finished_edge(cell: &Cell, profile: &EdgeProfile) -> FinishedEdge {
-    let part = cell.part.world_from_part;
-    let stations = profile.place.iter().map(|place| cell.part.edge.at(*place));
+    let part = cell.setup.part.world_from_part;
+    let stations = profile
+        .place
+        .iter()
+        .map(|place| cell.setup.part.edge.at(*place));
     let stations: Vec<_> = stations.collect();
     // Along a face, away from the edge: against the other face's normal.
     let into =
         |own: DVec3, other: DVec3| part.rotation * (-other).reject_from(own).normalize_or_zero();
-    let chamfer = cell.scenario.workpiece.chamfer;
+    let chamfer = cell.setup.scenario.workpiece.chamfer;
     FinishedEdge {
         points_in_world: (stations.iter().map(|at| part.transform_point(at.point))).collect(),
         outwards: (stations.iter().map(|at| part.rotation * at.bisector)).collect(),
@@ -295,11 +299,12 @@ pub fn finished_edge(cell: &Cell, profile: &EdgeProfile) -> FinishedEdge {
 
 /// The edge as it was planned, with the mean relative error of the force over each segment while following.
 fn edge_path(cell: &Cell, recording: &Recording) -> Result<EdgePath, RecordingError> {
-    let edge = &cell.part.edge;
+    let edge = &cell.setup.part.edge;
     let points_in_world = (0..=EDGE_SEGMENTS)
         .map(|i| {
             let place = edge.length * i as f64 / EDGE_SEGMENTS as f64;
-            cell.scenario
+            cell.setup
+                .scenario
                 .workpiece
                 .world_from_part
                 .transform_point(edge.at(place).point)
@@ -309,7 +314,7 @@ fn edge_path(cell: &Cell, recording: &Recording) -> Result<EdgePath, RecordingEr
     if let Some(span) = recording.phase(crate::metrics::FOLLOW_PHASE) {
         let force = recording.values(schema::CONTACT_FORCE)?;
         let place = recording.values(schema::PATH_LENGTH)?;
-        let desired = cell.scenario.process.force;
+        let desired = cell.setup.scenario.process.force;
         for i in recording.samples_in(span).filter(|&i| force[i] > 0.0) {
             // A sample between two of them is of the one that begins there, whatever its last bits are.
             let segment = (place[i] / edge.length * EDGE_SEGMENTS as f64 + 1e-9) as usize;

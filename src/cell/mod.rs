@@ -28,32 +28,20 @@ pub use payload::{FlangeLoad, with_housing};
 pub use resolution::Resolution;
 pub use setup::{Setup, Stance, arm_options};
 
-use crate::arm::chain::{KinematicChain, MAX_JOINTS};
+use crate::arm::chain::MAX_JOINTS;
 use crate::arm::kinematics::{jacobian_at, link_poses};
-use crate::arm::urdf::Arm;
-use crate::collision::{CollisionModel, Meeting};
+use crate::collision::Meeting;
 use crate::control::force::ForceController;
 use crate::device::Device;
-use crate::path::{Pass, Plan};
-use crate::physics::joint_spring::JointSpring;
+use crate::path::Plan;
 use crate::physics::push_only::PushOnly;
-use crate::plant::{EdgeStation, PlantParameters, Relief};
+use crate::plant::{EdgeStation, Relief};
 use crate::scenario::{Scenario, ScenarioError, load};
 
 /// A cell, ready to run.
 pub struct Cell {
-    /// Scenario from which it was made.
-    pub scenario: Scenario,
-    /// The arm.
-    pub arm: Arm,
-    /// The arm with the device's slide as its last joint, as its controller believes it to be.
-    pub arm_with_slide: KinematicChain,
-    /// The same as it is.
-    pub bodies: KinematicChain,
-    /// Transmission between motor and link of each of its joints, base first; none where they are one.
-    pub transmissions: Vec<Option<JointSpring>>,
-    /// Its physics.
-    pub plant: PlantParameters,
+    /// What of it does not depend on where the part lies.
+    pub setup: Setup,
     /// How finely a step of the simulation is cut.
     pub resolution: Resolution,
     /// The middle of the followed edge, where the part is believed.
@@ -62,12 +50,6 @@ pub struct Cell {
     pub device: Device,
     /// Controller of the regulator's pressure, as it is at the start.
     pub controller: ForceController,
-    /// Part, edge and burr.
-    pub part: Part,
-    /// What must not meet, the part where it is believed to be.
-    pub collision: CollisionModel,
-    /// Passes along the edge, at least one.
-    pub passes: Vec<Pass>,
     /// The job.
     pub plan: Plan,
     /// Cosine between the tool's axis and the contact normal in the middle of the edge: the share of the contact force that the device sees there [1].
@@ -76,8 +58,6 @@ pub struct Cell {
     pub gravity_on_edge: [f64; 2],
     /// Masses of the arm that are estimated, and what that leaves open.
     pub estimated: Option<EstimatedArm>,
-    /// Notes on what a user may not expect, one sentence each.
-    pub notes: Vec<String>,
 }
 
 impl Cell {
@@ -94,7 +74,7 @@ impl Cell {
     /// # Errors
     /// Something is missing, refused or out of reach; the error names file, key or waypoint.
     pub fn new(scenario: Scenario) -> Result<Self, CellError> {
-        let setup = Setup::load(scenario)?;
+        let mut setup = Setup::load(scenario)?;
         let resolution = Resolution::of(&setup.scenario, &setup.plant)?;
         if let Some(Meeting { names, depth, .. }) = setup.collision.standing().into_iter().next() {
             return Err(CellError::Standing {
@@ -121,57 +101,38 @@ impl Cell {
                 .plant
                 .with_friction_of_terms(setup.plant.device.clone()),
         );
-        let Setup {
-            scenario,
-            arm,
-            arm_with_slide,
-            bodies,
-            transmissions,
-            plant,
-            part,
-            collision,
-            passes,
-            mut notes,
-        } = setup;
+        let notes = &mut setup.notes;
         notes.extend(estimated.as_ref().map(EstimatedArm::note));
         notes.extend(plan.notes.iter().cloned());
-        notes.extend(resolution.note(&scenario));
+        notes.extend(resolution.note(&setup.scenario));
+        let edge = &setup.part.edge;
         let middle = station(
-            &part.edge,
-            scenario.workpiece.world_from_part,
-            0.5 * part.edge.length,
+            edge,
+            setup.scenario.workpiece.world_from_part,
+            0.5 * edge.length,
         );
         Ok(Self {
-            scenario,
-            arm,
-            arm_with_slide,
-            bodies,
-            transmissions,
-            plant,
+            setup,
             resolution,
             middle,
             device,
             controller,
-            part,
-            collision,
-            passes,
             plan,
             axial_share,
             gravity_on_edge,
             estimated,
-            notes,
         })
     }
 
     /// Component of gravity along the tool's axis [m/s2].
     pub fn gravity_along(&self, axis: DVec3) -> f64 {
-        self.scenario.simulation.gravity.dot(axis)
+        self.setup.scenario.simulation.gravity.dot(axis)
     }
 
     /// Offset of the part's surface from its mesh where the ball is, at a place along the edge [m].
     pub fn relief(&self, place: f64) -> Relief {
-        let place = place.clamp(0.0, self.part.edge.length);
-        let ride = self.part.ride.as_ref();
+        let place = place.clamp(0.0, self.setup.part.edge.length);
+        let ride = self.setup.part.ride.as_ref();
         self.relief_ridden(
             place,
             ride.map(|ride| (ride.lift(place), ride.slope(place), 0.0)),
@@ -180,9 +141,9 @@ impl Cell {
 
     /// The same of an edge on which the ball rides with a lift [m], its slope [1] and its rate where it is [m/s].
     pub fn relief_ridden(&self, place: f64, ridden: Option<(f64, f64, f64)>) -> Relief {
-        let world_from_part = self.scenario.workpiece.world_from_part;
-        let here = station(&self.part.edge, world_from_part, place);
-        let mut relief = self.plant.cell.relief(&self.middle, &here);
+        let world_from_part = self.setup.scenario.workpiece.world_from_part;
+        let here = station(&self.setup.part.edge, world_from_part, place);
+        let mut relief = self.setup.plant.cell.relief(&self.middle, &here);
         if let Some((lift, slope, rate)) = ridden {
             relief.rate += rate;
             relief.height += lift;
@@ -194,12 +155,12 @@ impl Cell {
     /// The joint, from 1, whose turning moves the tool most along the contact normal in the middle of the job: what is wrong with it shows most.
     pub fn telling_joint(&self) -> usize {
         let reference = self.plan.reference(0.5 * self.plan.duration());
-        let count = self.arm.chain.len();
+        let count = self.setup.arm.chain.len();
         let mut links = [DPose3::IDENTITY; MAX_JOINTS];
-        let base = self.scenario.arm.world_from_base;
+        let base = self.setup.scenario.arm.world_from_base;
         let position = &reference.position[..count];
-        link_poses(&self.arm.chain, base, position, &mut links[..count]);
-        let jacobian = jacobian_at(&self.arm.chain, &links[..count], reference.centre);
+        link_poses(&self.setup.arm.chain, base, position, &mut links[..count]);
+        let jacobian = jacobian_at(&self.setup.arm.chain, &links[..count], reference.centre);
         let normal = reference.normal.to_array();
         let along = |joint: usize| -> f64 {
             let rows = normal.iter().enumerate();

@@ -59,8 +59,8 @@ pub fn run_cell_observed(
         observer(simulation);
     })?;
     let wall = start.elapsed().as_secs_f64();
-    let mut summary =
-        summarise(&recording, &limits(cell)).map_err(RunError::metrics(&cell.scenario.path))?;
+    let mut summary = summarise(&recording, &limits(cell))
+        .map_err(RunError::metrics(&cell.setup.scenario.path))?;
     if let Some(edge) = &edge {
         summarise_edge(&mut summary, edge, &edge_limits(cell));
     }
@@ -76,20 +76,23 @@ pub fn run_cell_observed(
 
 /// What its edge is measured against.
 fn edge_limits(cell: &Cell) -> EdgeLimits {
-    let ChamferScenario { leg, residual_burr } = cell.scenario.workpiece.chamfer;
+    let ChamferScenario { leg, residual_burr } = cell.setup.scenario.workpiece.chamfer;
     EdgeLimits {
         leg,
         residual_burr,
-        ends: (cell.scenario.removal).map_or(0.0, |removal| removal.contact_length),
+        ends: (cell.setup.scenario.removal).map_or(0.0, |removal| removal.contact_length),
     }
 }
 
 fn limits(cell: &Cell) -> SummaryLimits {
-    let joints = &cell.arm.chain.joints;
+    let joints = &cell.setup.arm.chain.joints;
     SummaryLimits {
-        desired_force: cell.passes[0].force,
-        later_forces: cell.passes[1..].iter().map(|pass| pass.force).collect(),
-        stroke_limits: (0.0, cell.scenario.device.parameters.full_stroke),
+        desired_force: cell.setup.passes[0].force,
+        later_forces: cell.setup.passes[1..]
+            .iter()
+            .map(|pass| pass.force)
+            .collect(),
+        stroke_limits: (0.0, cell.setup.scenario.device.parameters.full_stroke),
         joint_efforts: joints.iter().map(|joint| joint.effort).collect(),
         joint_names: joints.iter().map(|joint| joint.name.clone()).collect(),
     }

@@ -65,7 +65,7 @@ impl Job {
     #[must_use]
     pub fn notes(&self) -> &[String] {
         match self {
-            Self::Cell(cell) => &cell.notes,
+            Self::Cell(cell) => &cell.setup.notes,
             Self::Bench(_) => &[],
         }
     }
@@ -107,7 +107,7 @@ impl FinishedCell {
     /// # Errors
     /// An unknown metric.
     pub fn bounds(&self, cell: &Cell) -> Result<Vec<BoundCheck>, RunError> {
-        let scenario = &cell.scenario;
+        let scenario = &cell.setup.scenario;
         check_cell(
             &self.summary,
             &scenario.expect,

@@ -49,7 +49,7 @@ pub struct Cutting {
 impl Cutting {
     /// The tool, as worn as it comes, on the edge as it comes to the cell; none of a tool that does not turn.
     pub fn new(cell: &Cell) -> Option<Self> {
-        let scenario = &cell.scenario;
+        let scenario = &cell.setup.scenario;
         let tool = scenario.tool?;
         let rubbing = CuttingForce {
             specific_energy: 0.0,
@@ -59,10 +59,14 @@ impl Cutting {
             tool,
             removal: scenario.removal,
             cutting: scenario.removal.map_or(rubbing, |removal| removal.cutting),
-            edge: cell.part.edge_state.clone(),
+            edge: cell.setup.part.edge_state.clone(),
             ball_radius: scenario.device.tool_radius,
             place: 0.0,
-            ride: cell.part.edge_state.ride(0.0, scenario.device.tool_radius),
+            ride: cell
+                .setup
+                .part
+                .edge_state
+                .ride(0.0, scenario.device.tool_radius),
             wear: (scenario.removal).map_or(0.0, |removal| removal.wear_at_start),
             reading: CuttingReading::default(),
         })

@@ -109,11 +109,11 @@ pub struct Simulation<'a> {
 impl<'a> Simulation<'a> {
     /// Puts the cell at the start of its job: the arm at rest, the slide out against its stop, the device at pressure.
     pub fn new(cell: &'a Cell) -> Self {
-        let scenario = &cell.scenario;
+        let scenario = &cell.setup.scenario;
         let mut world = World::new(&WorldDescription::of(cell));
         let reference = cell.plan.reference(0.0);
         let gravity = cell.gravity_along(reference.axis);
-        let desired = cell.passes[0].force * reference.share;
+        let desired = cell.setup.passes[0].force * reference.share;
         let set_pressure =
             PressureMap::new(&scenario.device.parameters).set_pressure(desired, gravity);
         let parameters = &scenario.device.parameters;
@@ -125,12 +125,15 @@ impl<'a> Simulation<'a> {
         };
         let motion = PistonMotion { stroke, speed: 0.0 };
         let at_rest = (motion, cell.device.at_rest(stroke, set_pressure));
-        let device = RunningDevice::new(&cell.plant, &cell.device, at_rest);
+        let device = RunningDevice::new(&cell.setup.plant, &cell.device, at_rest);
         let mut positions = cell.plan.start();
-        for (position, offset) in positions.iter_mut().zip(cell.plant.cell.encoder_offset) {
+        for (position, offset) in positions
+            .iter_mut()
+            .zip(cell.setup.plant.cell.encoder_offset)
+        {
             *position -= offset;
         }
-        let bandwidth = cell.plant.cell.servo_bandwidth;
+        let bandwidth = cell.setup.plant.cell.servo_bandwidth;
         let lag = |start: &f64| CommandLag::at_rest(bandwidth, *start);
         let lags = match bandwidth.is_finite() {
             true => positions.iter().map(lag).collect(),
@@ -139,7 +142,7 @@ impl<'a> Simulation<'a> {
         positions.push(stroke);
         let count = positions.len();
         let mut masses = nalgebra::DMatrix::zeros(count, count);
-        mass_matrix(&cell.arm_with_slide, &positions, &mut masses);
+        mass_matrix(&cell.setup.arm_with_slide, &positions, &mut masses);
         let inertias: Vec<f64> = (0..count - 1).map(|i| masses[(i, i)]).collect();
         let motors = start::motors(cell, &inertias, &mut positions);
         world.set_positions(&positions);
@@ -160,7 +163,7 @@ impl<'a> Simulation<'a> {
             reference,
             controller: cell.controller.clone(),
             answer: set_pressure,
-            errors: RunningSensors::new(cell.plant.sensors),
+            errors: RunningSensors::new(cell.setup.plant.sensors),
             sensors,
             readings: Readings {
                 stroke,
@@ -201,7 +204,7 @@ impl<'a> Simulation<'a> {
 
     /// Whether the job is done, or was stopped by an error.
     pub fn done(&self) -> bool {
-        let behind = self.behind / self.cell.scenario.simulation.step;
+        let behind = self.behind / self.cell.setup.scenario.simulation.step;
         self.stopped || self.steps as f64 >= self.total_steps as f64 + behind.ceil()
     }
 
@@ -237,7 +240,7 @@ impl<'a> Simulation<'a> {
                 *clock = now;
             }
         };
-        let step = self.cell.scenario.simulation.step;
+        let step = self.cell.setup.scenario.simulation.step;
         let begin = self.steps as f64 * step;
         let near = !self.touches.is_empty();
         let parts = self.cell.resolution.parts(near);
@@ -280,12 +283,12 @@ impl<'a> Simulation<'a> {
 
     /// Contact force that the pass asks for [N].
     fn desired(&self, reference: &Reference) -> f64 {
-        self.cell.passes[reference.pass].force
+        self.cell.setup.passes[reference.pass].force
     }
 
     /// The reference at the end of a step that starts at a time [s]: later by what a feed that follows force or power has lost.
     fn lead(&mut self, start: f64, dt: f64) -> Reference {
-        let follows = self.cell.scenario.process.feed_follows;
+        let follows = self.cell.setup.scenario.process.feed_follows;
         if let (Some(follows), Some(cutting)) = (follows, &self.cutting) {
             let wanted = match self.reference.phase {
                 Phase::Follow => {
@@ -316,10 +319,10 @@ impl<'a> Simulation<'a> {
     }
 
     fn set_pressure(&mut self, reference: &Reference) -> f64 {
-        let step = self.cell.scenario.simulation.step;
+        let step = self.cell.setup.scenario.simulation.step;
         if !self
             .steps
-            .is_multiple_of(self.cell.scenario.controller.steps(step))
+            .is_multiple_of(self.cell.setup.scenario.controller.steps(step))
         {
             return self.sensors.command(self.answer, step);
         }
@@ -339,7 +342,7 @@ impl<'a> Simulation<'a> {
     /// Loads on the slide from now on, at a time [s], with the moment that its terms are of. Where the surface stands no one knows but where the tool touches it.
     fn load<'b>(&'b self, time: f64, touches: &'b [Touch]) -> (PistonLoad<'b>, Option<Moment>) {
         let mass = self.cell.device.parameters().moving_mass;
-        let mut load = PistonLoad::new(&self.cell.plant.contact, mass, touches, time);
+        let mut load = PistonLoad::new(&self.cell.setup.plant.contact, mass, touches, time);
         load.stroke.0[0] = self.device.motion.stroke;
         load.axial.0[0] = mass * self.carried;
         let moment = (self.device).meet_terms(&mut load, self.answer, f64::NAN);
@@ -349,13 +352,13 @@ impl<'a> Simulation<'a> {
     /// Device and contact over the step; a clamped slide stays where it is.
     fn advance_slide(&mut self, set_pressure: f64, start: f64, dt: f64) -> SlideStep {
         let cell = self.cell;
-        let substeps = cell.scenario.simulation.substeps;
+        let substeps = cell.setup.scenario.simulation.substeps;
         let mut pressed = std::mem::take(&mut self.pressed);
         let mut device = self.device.clone();
         let (mut load, moment) = self.load(start, &self.touches);
         load.peak = Some(&self.peak);
         device.face_terms(&mut load, moment.as_ref(), dt);
-        let step = if cell.scenario.device.locked {
+        let step = if cell.setup.scenario.device.locked {
             let motion = device.motion;
             (cell.device).advance(&mut device.state, set_pressure, motion, dt, substeps);
             SlideStep {
@@ -382,7 +385,7 @@ impl<'a> Simulation<'a> {
     fn move_bodies(&mut self, slide: &SlideStep, dt: f64) {
         let slide_axis = self.slide();
         let speed = self.world.velocities()[slide_axis];
-        let locked = self.cell.scenario.device.locked;
+        let locked = self.cell.setup.scenario.device.locked;
         let led = if locked { None } else { Some(slide.motion) };
         self.world.step(&self.pressed, led);
         let mass = self.cell.device.parameters().moving_mass;
@@ -420,7 +423,7 @@ impl<'a> Simulation<'a> {
                 (self.world.positions()[axis], self.world.velocities()[axis]);
             // The servo closes on the encoder: the arm stands off by what it reads too much.
             let command = AxisCommand {
-                position: command.position - self.cell.plant.cell.encoder_offset[axis],
+                position: command.position - self.cell.setup.plant.cell.encoder_offset[axis],
                 ..command
             };
             self.laws[axis] = match &mut self.motors[axis] {
@@ -437,13 +440,13 @@ impl<'a> Simulation<'a> {
                 }
             };
         }
-        let device_scenario = &self.cell.scenario.device;
+        let device_scenario = &self.cell.setup.scenario.device;
         self.laws[n] = if device_scenario.locked {
             let stiffness = device_scenario.parameters.lock_stiffness;
             JointLaw {
                 force: 0.0,
                 stiffness,
-                rest: self.cell.scenario.process.working_stroke,
+                rest: self.cell.setup.scenario.process.working_stroke,
                 damping: 2.0 * (stiffness * device_scenario.parameters.moving_mass).sqrt(),
             }
         } else {
@@ -466,12 +469,12 @@ impl<'a> Simulation<'a> {
                 self.torques[axis] = torque;
             }
             self.servo.hold(axis, cut);
-            let offset = self.cell.plant.cell.encoder_offset[axis];
+            let offset = self.cell.setup.plant.cell.encoder_offset[axis];
             // Told is the middle of the step.
             let commanded = told.position[axis] + 0.5 * dt * told.velocity[axis] - offset;
             off = off.max((commanded - angle).abs());
             if cut {
-                let joint = &self.cell.arm.chain.joints[axis];
+                let joint = &self.cell.setup.arm.chain.joints[axis];
                 self.saturation.note(joint, time, told.phase);
             }
         }
@@ -481,21 +484,21 @@ impl<'a> Simulation<'a> {
     /// Torques that the reference needs, with the contact force that the device's own force implies.
     fn feed_forward(&self, reference: &Reference, device: f64) -> [f64; MAX_JOINTS] {
         let (cell, n) = (self.cell, self.slide());
-        let chain = &cell.arm_with_slide;
-        let base = cell.scenario.arm.world_from_base;
+        let chain = &cell.setup.arm_with_slide;
+        let base = cell.setup.scenario.arm.world_from_base;
         let mut position = reference.position;
         position[n] = self.world.positions()[n];
         let mut torque = [0.0; MAX_JOINTS];
         inverse_dynamics(
             chain,
             base.rotation,
-            cell.scenario.simulation.gravity,
+            cell.setup.scenario.simulation.gravity,
             &position[..=n],
             &reference.velocity[..=n],
             &reference.acceleration[..=n],
             &mut torque[..=n],
         );
-        if cell.scenario.arm.servo.contact_feed_forward {
+        if cell.setup.scenario.arm.servo.contact_feed_forward {
             let contact = (device - torque[n]) / reference.share;
             let mut links = [DPose3::IDENTITY; MAX_JOINTS];
             self.world.link_poses(&mut links);

@@ -47,9 +47,9 @@ pub struct WorldDescription<'a> {
 impl<'a> WorldDescription<'a> {
     /// The world of a cell.
     pub fn of(cell: &'a Cell) -> Self {
-        let scenario = &cell.scenario;
+        let scenario = &cell.setup.scenario;
         Self {
-            chain: &cell.bodies,
+            chain: &cell.setup.bodies,
             world_from_base: scenario.arm.world_from_base,
             gravity: scenario.simulation.gravity,
             step: scenario.simulation.step,
@@ -57,7 +57,7 @@ impl<'a> WorldDescription<'a> {
                 radius: scenario.device.tool_radius,
                 centre_in_link: DVec3::new(0.0, 0.0, scenario.device.tool_centre),
             },
-            part: &cell.part.mesh_in_world,
+            part: &cell.setup.part.mesh_in_world,
             // A tool that turns rubs against its own surface's motion (`cutting`), not against its travel.
             friction: match scenario.tool {
                 Some(_) => 0.0,

@@ -74,18 +74,19 @@ fn placed(scenario: &Scenario, random: &mut ChaCha8Rng) -> Scenario {
 
 /// A robot's motion and its placements, with what is found of each pair.
 fn document(cell: &Cell, random: &mut ChaCha8Rng) -> (Value, Vec<Vec<bool>>) {
-    let joints = cell.arm_with_slide.len();
-    let base = cell.scenario.arm.world_from_base;
+    let joints = cell.setup.arm_with_slide.len();
+    let base = cell.setup.scenario.arm.world_from_base;
     let motion: Vec<Vec<Value>> = (cell.plan.motion().knots().iter())
         .map(|knot| {
             let mut poses = [DPose3::IDENTITY; MAX_JOINTS];
             let poses = &mut poses[..joints];
-            link_poses(&cell.arm_with_slide, base, &knot[..joints], poses);
+            link_poses(&cell.setup.arm_with_slide, base, &knot[..joints], poses);
             poses.iter().map(|at| pose(*at)).collect()
         })
         .collect();
-    let of_robot =
-        |body: &&Body| matches!(body.mount, Mount::Link(_)) || body.name == cell.arm.link_names[0];
+    let of_robot = |body: &&Body| {
+        matches!(body.mount, Mount::Link(_)) || body.name == cell.setup.arm.link_names[0]
+    };
     let robot: Vec<Value> = cell
         .collision
         .bodies()
@@ -94,14 +95,14 @@ fn document(cell: &Cell, random: &mut ChaCha8Rng) -> (Value, Vec<Vec<bool>>) {
         .collect();
     let (mut placements, mut verdicts) = (Vec::new(), Vec::new());
     for _ in 0..PLACEMENTS {
-        let model = Setup::load(placed(&cell.scenario, random))
+        let model = Setup::load(placed(&cell.setup.scenario, random))
             .unwrap()
             .collision;
         let standing = model.bodies().filter(|body| !of_robot(body));
         let standing: Vec<Value> = standing.map(described).collect();
         let ours = ["part", "box", "bracket"];
         let with_standing = |pair: &[String; 2]| {
-            ours.contains(&pair[1].as_str()) && pair[0] != cell.arm.link_names[0]
+            ours.contains(&pair[1].as_str()) && pair[0] != cell.setup.arm.link_names[0]
         };
         let pairs: Vec<[String; 2]> = model.checked().filter(with_standing).collect();
         let met: Vec<[String; 2]> = (model.meetings(cell.plan.motion()).into_iter())

@@ -69,12 +69,17 @@ fn five_axes_that_can_tilt_the_tool_follow_the_edge() {
     let folder = tempfile::tempdir().unwrap();
     let cell = Cell::new(five_axis_scenario(&folder, "1 0 0", 0.0))
         .unwrap_or_else(|error| panic!("{error}"));
-    let distance = cell.scenario.device.tool_centre + cell.scenario.process.working_stroke;
+    let distance =
+        cell.setup.scenario.device.tool_centre + cell.setup.scenario.process.working_stroke;
     for i in 0..=50 {
         let reference = cell
             .plan
             .reference(cell.plan.duration() * f64::from(i) / 50.0);
-        let flange = tip_pose(&cell.arm.chain, DPose3::IDENTITY, &reference.position[..5]);
+        let flange = tip_pose(
+            &cell.setup.arm.chain,
+            DPose3::IDENTITY,
+            &reference.position[..5],
+        );
         let axis = flange.rotation * DVec3::Z;
         assert!(axis.distance(reference.axis) < 1e-6);
         assert!((flange.translation + axis * distance).distance(reference.centre) < 1e-6);

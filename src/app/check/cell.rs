@@ -30,17 +30,17 @@ pub(super) fn cell(scenario: Scenario) -> Result<Report, AppError> {
         source,
     })?;
     let cell = Cell::new(scenario)?;
-    let scenario = &cell.scenario;
+    let scenario = &cell.setup.scenario;
     let mut report = Report::new(&file, "a robot cell to simulate", Some(&scenario.title));
-    arm(&mut report, &scenario.arm, cell.arm.chain.len());
+    arm(&mut report, &scenario.arm, cell.setup.arm.chain.len());
     estimated(&mut report, cell.estimated.as_ref())?;
     report.device(&scenario.device.parameters);
-    flange(&mut report, &FlangeLoad::of(scenario, &cell.arm));
+    flange(&mut report, &FlangeLoad::of(scenario, &cell.setup.arm));
     overrides(&mut report, &file)?;
     if scenario.device.locked {
         report.fact("", "its slide is clamped (device.locked)");
     }
-    part(&mut report, &scenario.workpiece, &cell.part.edge);
+    part(&mut report, &scenario.workpiece, &cell.setup.part.edge);
     let process = &scenario.process;
     job(&mut report, &cell);
     tool(&mut report, &cell);
@@ -48,19 +48,19 @@ pub(super) fn cell(scenario: Scenario) -> Result<Report, AppError> {
     report.drawing = Some(across_the_edge(&cell));
     report.number("force_n", process.force);
     report.number("feed_mm_per_s", process.feed * 1e3);
-    report.number("edge_length_mm", cell.part.edge.length * 1e3);
+    report.number("edge_length_mm", cell.setup.part.edge.length * 1e3);
     let phases = cell.plan.phases();
     let phases = phases
         .iter()
         .map(|(phase, from, to)| format!("{} {:.1} s", phase.name(), to - from));
     report.fact("phases", phases.collect::<Vec<_>>().join(", "));
-    let axes = cell.arm.chain.len() as f64;
+    let axes = cell.setup.arm.chain.len() as f64;
     let bytes = BYTES + BYTES_PER_AXIS * axes;
     let (duration, step) = (cell.plan.duration(), scenario.simulation.step);
     report.extent(duration, step, (duration / step).ceil(), bytes);
     report.bounds(&scenario.expect);
     files(&mut report, &scenario.arm, &scenario.workpiece);
-    for note in &cell.notes {
+    for note in &cell.setup.notes {
         report.note(note.as_str());
     }
     report.next(format!("idc run {}", word(&file)));
@@ -69,10 +69,10 @@ pub(super) fn cell(scenario: Scenario) -> Result<Report, AppError> {
 
 /// Force and feed of each pass along the edge.
 fn job(report: &mut Report, cell: &Cell) {
-    let stroke = shown(cell.scenario.process.working_stroke * 1e3);
+    let stroke = shown(cell.setup.scenario.process.working_stroke * 1e3);
     let told = |pass: &Pass| format!("{} N at {} mm/s", shown(pass.force), shown(pass.feed * 1e3));
-    let count = cell.passes.len();
-    for (index, pass) in cell.passes.iter().enumerate() {
+    let count = cell.setup.passes.len();
+    for (index, pass) in cell.setup.passes.iter().enumerate() {
         let told = told(pass);
         match (count, index) {
             (1, _) => report.fact("job", format!("{told}, working stroke {stroke} mm")),
@@ -88,7 +88,7 @@ fn job(report: &mut Report, cell: &Cell) {
 
 /// The tool that turns, what each pass takes off by its law, and what the edge should be like.
 fn grinding(report: &mut Report, cell: &Cell) {
-    let scenario = &cell.scenario;
+    let scenario = &cell.setup.scenario;
     let Some(turning) = &scenario.tool else {
         return;
     };
@@ -121,7 +121,7 @@ fn grinding(report: &mut Report, cell: &Cell) {
         ),
     );
     if let Some(removal) = &scenario.removal {
-        for (index, pass) in cell.passes.iter().enumerate() {
+        for (index, pass) in cell.setup.passes.iter().enumerate() {
             let (area, wear) = (removal.contact_area, removal.wear_at_start);
             let rate = removal.law.removal_rate(pass.force, speed, area, wear);
             let text = format!(
@@ -161,7 +161,7 @@ fn tool(report: &mut Report, cell: &Cell) {
         )
     };
     let roll = (cell.plan.roll.to_degrees() * 10.0).round() / 10.0;
-    let chosen = match cell.scenario.process.roll {
+    let chosen = match cell.setup.scenario.process.roll {
         Some(_) => "",
         None => ", found by search",
     };
@@ -173,8 +173,8 @@ fn tool(report: &mut Report, cell: &Cell) {
     report.fact("tool", text);
     report.number("lean_deg", angle);
     report.number("roll_deg", roll);
-    let margin = cell.scenario.collision.margin;
-    let names: Vec<&str> = cell.collision.names().collect();
+    let margin = cell.setup.scenario.collision.margin;
+    let names: Vec<&str> = cell.setup.collision.names().collect();
     let text = format!(
         "none of {} bodies along the whole motion, {} mm apart at least",
         names.len(),

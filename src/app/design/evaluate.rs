@@ -148,7 +148,7 @@ fn cell(scenario: Scenario) -> Result<Run, Failure> {
         return Err(stop.into());
     }
     finished.summary.timing = None;
-    let scenario = &cell.scenario;
+    let scenario = &cell.setup.scenario;
     let axial = force_range(
         &scenario.device.parameters,
         &scenario.sensing.command,

@@ -265,7 +265,7 @@ impl Stage {
             AnyScenario::Bench(bench) => (bench.believed(), 1),
             AnyScenario::Cell(cell) => {
                 let cell = Cell::new(*cell)?;
-                (cell.plant.clone(), cell.telling_joint())
+                (cell.setup.plant.clone(), cell.telling_joint())
             }
         };
         Ok(Self {

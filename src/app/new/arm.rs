@@ -401,7 +401,11 @@ fn run_once(file: &Path) -> Result<Option<String>, AppError> {
             "a drive is at {share:.0} % of its limit in a run"
         )));
     }
-    let verdicts = metrics::check(metrics::METRICS, &finished.summary, &cell.scenario.expect);
+    let verdicts = metrics::check(
+        metrics::METRICS,
+        &finished.summary,
+        &cell.setup.scenario.expect,
+    );
     let verdicts = verdicts.map_err(|source| AppError::Metrics {
         file: file.display().to_string(),
         source,

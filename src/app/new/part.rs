@@ -201,7 +201,7 @@ fn with_force(force: f64) -> Vec<KeyValue> {
 fn outcome(cell: &Cell) -> Option<RunOutcome> {
     let finished = run_cell(cell, &mut |_, _| ()).ok()?;
     let summary = &finished.summary;
-    let verdicts = metrics::check(metrics::METRICS, summary, &cell.scenario.expect).ok()?;
+    let verdicts = metrics::check(metrics::METRICS, summary, &cell.setup.scenario.expect).ok()?;
     Some(RunOutcome {
         stopped: finished.stop.is_some() || verdicts.iter().any(|verdict| !verdict.kept),
         force: summary.force_mean_n,

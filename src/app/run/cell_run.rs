@@ -39,7 +39,7 @@ fn chamfer(cell: &Cell) -> serde_json::Value {
     let ChamferScenario {
         leg: [least, most],
         residual_burr,
-    } = cell.scenario.workpiece.chamfer;
+    } = cell.setup.scenario.workpiece.chamfer;
     serde_json::json!({
         "leg_min_mm": 1e3 * least,
         "leg_max_mm": most.is_finite().then_some(1e3 * most),
@@ -93,7 +93,7 @@ impl<'a> Listener<'a> {
 
     /// One that shows the run in a viewer.
     pub(super) fn watching(cell: &'a Cell, watch: &'a Watch) -> Self {
-        let part = (PART_INTERVAL / cell.scenario.simulation.step).round() as usize;
+        let part = (PART_INTERVAL / cell.setup.scenario.simulation.step).round() as usize;
         Self::new(part, move |part| {
             let (samples, scene) = part.shown(cell)?;
             watch.add(samples, scene);
@@ -156,13 +156,14 @@ impl<'a> SummaryDocument<'a> {
         Self {
             schema: 1,
             scenario: &source.name,
-            title: &cell.scenario.title,
+            title: &cell.setup.scenario.title,
             set: source.set(),
             chamfer: finished.edge.as_ref().map(|_| chamfer(cell)),
             stopped: finished.stop.as_ref().map(ToString::to_string),
             summary: &finished.summary,
             expectations,
             joint_names: cell
+                .setup
                 .arm
                 .chain
                 .joints
@@ -170,9 +171,9 @@ impl<'a> SummaryDocument<'a> {
                 .map(|joint| joint.name.as_str())
                 .collect(),
             samples: finished.recording.sample_count(),
-            notes: &cell.notes,
+            notes: &cell.setup.notes,
             estimated_masses: cell.estimated.as_ref(),
-            judged: cell.scenario.judged_values().collect(),
+            judged: cell.setup.scenario.judged_values().collect(),
             provenance: origin,
         }
     }

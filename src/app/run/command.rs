@@ -95,7 +95,7 @@ pub(in super::super) fn put_in(
         AnyScenario::Bench(bench) => (bench.believed(), 1),
         AnyScenario::Cell(cell) => {
             let cell = Cell::new(*cell)?;
-            (cell.plant.clone(), cell.telling_joint())
+            (cell.setup.plant.clone(), cell.telling_joint())
         }
     };
     let mut edits = Vec::new();

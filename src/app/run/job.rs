@@ -79,7 +79,7 @@ impl Job {
                     collision,
                     simulation,
                     ..
-                } = &cell.scenario;
+                } = &cell.setup.scenario;
                 (
                     files_of_cell(path, arm, device, workpiece, &collision.obstacles),
                     simulation.seed,
@@ -133,7 +133,7 @@ fn perform_cell(
         let listeners = watching.into_iter().chain(growing_too).collect();
         let finished = run_heard(cell, told, listeners)?;
         let verdicts = finished.bounds(cell)?;
-        let title = &cell.scenario.title;
+        let title = &cell.setup.scenario.title;
         let document = SummaryDocument::new(cell, &finished, &verdicts, source, &origin).text()?;
         let course = edge_course(cell, &finished.recording)?;
         let worked = (finished.edge.as_ref()).map(|edge| FinishedEdge {

@@ -18,7 +18,7 @@ impl Simulation<'_> {
         force: f64,
         time: f64,
     ) -> Result<(), SimulationError> {
-        let radius = self.cell.scenario.device.tool_radius;
+        let radius = self.cell.setup.scenario.device.tool_radius;
         if reference.phase == Phase::Follow && off > radius {
             return Err(SimulationError::SlippedOff {
                 time,
@@ -76,7 +76,7 @@ impl Simulation<'_> {
                 value,
                 time,
                 phase: phase.name(),
-                step: self.cell.scenario.simulation.step,
+                step: self.cell.setup.scenario.simulation.step,
             }),
         }
     }
@@ -90,7 +90,7 @@ impl Simulation<'_> {
         for (axis, joint) in joints.iter().enumerate() {
             let error = joint[1] - joint[0];
             if error.abs() > LOST {
-                let axis = &self.cell.arm.chain.joints[axis];
+                let axis = &self.cell.setup.arm.chain.joints[axis];
                 return Err(SimulationError::AxisLost {
                     axis: axis.name.clone(),
                     error: error.abs(),
@@ -131,7 +131,7 @@ impl Simulation<'_> {
         (stroke, tip): (f64, f64),
         time: f64,
     ) -> Result<(), SimulationError> {
-        let scenario = &self.cell.scenario;
+        let scenario = &self.cell.setup.scenario;
         let full_stroke = scenario.device.parameters.full_stroke;
         if scenario.device.locked {
             return Ok(());

@@ -11,9 +11,9 @@ use crate::control::transmission::Motor;
 
 /// The servo of all axes, each about its own inertia [kg m2].
 pub(super) fn servo(cell: &Cell, inertias: &[f64]) -> Servo {
-    let parameters = &cell.scenario.arm.servo;
+    let parameters = &cell.setup.scenario.arm.servo;
     Servo::new(
-        &cell.arm.chain,
+        &cell.setup.arm.chain,
         inertias,
         &ServoParameters {
             natural_frequency: parameters.natural_frequency * std::f64::consts::TAU,
@@ -26,9 +26,9 @@ pub(super) fn servo(cell: &Cell, inertias: &[f64]) -> Servo {
 /// A watch over what must not meet, the part where it really is.
 pub(super) fn clearance(cell: &Cell, positions: &[f64]) -> ClearanceWatch {
     // Where effects have put the part, its tilt apart: it is none about the middle of the edge.
-    let aside = cell.plant.cell.aside(&cell.middle, cell.middle.point);
-    let part = DPose3::from_translation(aside) * cell.part.world_from_part;
-    let standing = cell.collision.with_part_at(part);
+    let aside = cell.setup.plant.cell.aside(&cell.middle, cell.middle.point);
+    let part = DPose3::from_translation(aside) * cell.setup.part.world_from_part;
+    let standing = cell.setup.collision.with_part_at(part);
     ClearanceWatch::new(standing, &to_array(positions))
 }
 
@@ -46,9 +46,9 @@ const ROTOR_SHARE: f64 = 0.5;
 pub(super) fn motors(cell: &Cell, inertias: &[f64], positions: &mut [f64]) -> Vec<Option<Motor>> {
     let still = vec![0.0; positions.len()];
     let mut torques = still.clone();
-    let scenario = &cell.scenario;
+    let scenario = &cell.setup.scenario;
     inverse_dynamics(
-        &cell.arm_with_slide,
+        &cell.setup.arm_with_slide,
         scenario.arm.world_from_base.rotation,
         scenario.simulation.gravity,
         positions,
@@ -63,5 +63,10 @@ pub(super) fn motors(cell: &Cell, inertias: &[f64], positions: &mut [f64]) -> Ve
         positions[axis] = link;
         Some(motor)
     };
-    cell.transmissions.iter().enumerate().map(motor).collect()
+    cell.setup
+        .transmissions
+        .iter()
+        .enumerate()
+        .map(motor)
+        .collect()
 }
