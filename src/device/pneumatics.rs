@@ -400,12 +400,12 @@ impl Device {
     fn line_flows(&self, hose: &Hose, air: &AirState, outlet: f64) -> [f64; UPSTREAM + 1] {
         let gas = &self.parameters.gas;
         let (mut into, mut previous, last) = ([0.0; UPSTREAM + 1], outlet, hose.segments() - 1);
-        for j in 0..=last {
+        for (j, flow) in into.iter_mut().enumerate().take(last + 1) {
             let pressure = match j == last {
                 true => gas.pressure(air.hose_mass, hose.last_volume()),
                 false => gas.pressure(air.upstream[j], hose.segment_volume()),
             };
-            into[j] = hose.mass_flow(previous, pressure);
+            *flow = hose.mass_flow(previous, pressure);
             previous = pressure;
         }
         into

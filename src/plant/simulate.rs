@@ -246,7 +246,7 @@ impl<'a> Replay<'a> {
             let start = span.length * part as f64 / parts;
             let touches = [touch.later(start)];
             let leg = load.later(start, &touches[..met]);
-            let leg = self.bend(rig, i, leg, touch.share, dt);
+            let leg = self.bend(rig, i, &leg, touch.share, dt);
             rig.device.advance::<false>(&leg, set_pressure, (dt, 1));
         }
         rig.device.note_flow(self.usual);
@@ -342,12 +342,12 @@ impl<'a> Replay<'a> {
         &self,
         rig: &mut RunningRig<'_>,
         i: usize,
-        load: PistonLoad<'b>,
+        load: &PistonLoad<'b>,
         share: f64,
         dt: f64,
     ) -> PistonLoad<'b> {
         let (Some(joints), Some(kinematics)) = (&mut rig.joints, &self.kinematics) else {
-            return load;
+            return *load;
         };
         let (plant, motion) = (self.plant, rig.device.motion);
         let now = load.deflected(&joints.now(i, motion.stroke, share));
