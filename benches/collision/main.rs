@@ -32,7 +32,7 @@ fn compare(name: &str, rounds: usize) -> Result<(), Box<dyn Error>> {
     let watched = load(&project.join(format!("scenarios/{name}.toml")))?;
     let mut free = watched.clone();
     let with = Cell::new(watched.clone())?;
-    free.setup.collision.allowed_pairs = with.setup.collision.checked().collect();
+    free.collision.allowed_pairs = with.setup.collision.checked().collect();
     let mut without = Cell::new(watched.clone())?;
     without.setup.collision = Cell::new(free.clone())?.setup.collision;
     let pairs = with.setup.collision.checked().count();

@@ -90,98 +90,111 @@ fn first_half(time: f64, each: f64) -> bool {
 #[must_use]
 pub fn experiments(evidence: &Evidence, plant: &PlantParameters) -> Vec<Experiment> {
     let limits = Limits::new(evidence, plant);
-    let top = limits.pressure;
-    let (surface, travel) = (limits.surface, limits.travel);
-    let (bar, mm) = (|p: f64| p * 1e-5, |x: f64| x * 1e3);
-    let free = f64::NAN;
-    let high = bar(top);
-    let fixed = format!("the surface fixed at {:.0} mm", mm(surface));
-    // The tool is set down on the surface before anything is asked of it.
-    let settled = |t: f64, then: f64| if t < 1.0 { 0.5 * top } else { then };
-    let ride = move |frequency: f64| {
-        move |t: f64| {
+    let [ramp, steps, dwell] = limits.at_a_fixed_surface();
+    let [strokes, reversals] = limits.without_a_workpiece();
+    let [slow, fast] = limits.on_a_moved_surface();
+    vec![ramp, steps, strokes, reversals, slow, fast, dwell]
+}
+
+impl Limits {
+    fn at_a_fixed_surface(&self) -> [Experiment; 3] {
+        let (top, surface) = (self.pressure, self.surface);
+        let high = bar(top);
+        let fixed = format!("the surface fixed at {:.0} mm", mm(surface));
+        // The tool is set down on the surface before anything is asked of it.
+        let settled = |t: f64, then: f64| if t < 1.0 { 0.5 * top } else { then };
+        [
+            Experiment {
+                name: "pressure_ramp",
+                instruction: format!(
+                    "with {fixed}, raise the set pressure slowly from 0 to {high:.1} bar and back, twice in 10 s"
+                ),
+                inputs: self.inputs(10.0, |t| (top * triangle(t / 5.0), true, surface)),
+            },
+            Experiment {
+                name: "pressure_steps",
+                instruction: format!(
+                    "with {fixed}, step the set pressure between {:.1} and {:.1} bar every 0.5 s, for 8 s",
+                    0.3 * high,
+                    0.8 * high
+                ),
+                inputs: self.inputs(8.0, |t| {
+                    let then = if first_half(t, 0.5) { 0.8 } else { 0.3 } * top;
+                    (settled(t, then), true, surface)
+                }),
+            },
+            Experiment {
+                name: "dwell",
+                instruction: format!("with {fixed}, hold {:.1} bar for 15 s", 0.5 * high),
+                inputs: self.inputs(15.0, |_| (0.5 * top, true, surface)),
+            },
+        ]
+    }
+
+    fn without_a_workpiece(&self) -> [Experiment; 2] {
+        let top = self.pressure;
+        let (high, none) = (bar(top), f64::NAN);
+        [
+            Experiment {
+                name: "free_strokes",
+                instruction: format!(
+                    "without a workpiece, full strokes out and in at {:.1}, {:.1} and {high:.1} bar, 1.5 s each way",
+                    0.33 * high,
+                    0.67 * high
+                ),
+                inputs: self.inputs(9.0, |t| {
+                    let pressure = top * ((t / 3.0).floor() + 1.0).min(3.0) / 3.0;
+                    (pressure, t % 3.0 < 1.5, none)
+                }),
+            },
+            Experiment {
+                name: "valve_reversals",
+                instruction: format!(
+                    "without a workpiece, reverse the valve in mid-stroke, every 0.15 s, at {:.1} bar, for 6 s",
+                    0.6 * high
+                ),
+                inputs: self.inputs(6.0, |t| (0.6 * top, first_half(t, 0.15), none)),
+            },
+        ]
+    }
+
+    fn on_a_moved_surface(&self) -> [Experiment; 2] {
+        let (half, surface, travel) = (0.5 * self.pressure, self.surface, self.travel);
+        let ride = |t: f64, frequency: f64| {
             let on = 1.0 - (-t / 0.5).exp();
-            (
-                0.5 * top,
-                true,
-                surface + travel * on * (TAU * frequency * t).sin(),
-            )
-        }
-    };
-    vec![
-        Experiment {
-            name: "pressure_ramp",
-            instruction: format!(
-                "with {fixed}, raise the set pressure slowly from 0 to {high:.1} bar and back, twice in 10 s"
-            ),
-            inputs: limits.inputs(10.0, |t| (top * triangle(t / 5.0), true, surface)),
-        },
-        Experiment {
-            name: "pressure_steps",
-            instruction: format!(
-                "with {fixed}, step the set pressure between {:.1} and {:.1} bar every 0.5 s, for 8 s",
-                0.3 * high,
-                0.8 * high
-            ),
-            inputs: limits.inputs(8.0, |t| {
-                let up = first_half(t, 0.5);
-                (
-                    settled(t, if up { 0.8 * top } else { 0.3 * top }),
-                    true,
-                    surface,
-                )
-            }),
-        },
-        Experiment {
-            name: "free_strokes",
-            instruction: format!(
-                "without a workpiece, full strokes out and in at {:.1}, {:.1} and {high:.1} bar, 1.5 s each way",
-                0.33 * high,
-                0.67 * high
-            ),
-            inputs: limits.inputs(9.0, |t| {
-                (
-                    top * ((t / 3.0).floor() + 1.0).min(3.0) / 3.0,
-                    t % 3.0 < 1.5,
-                    free,
-                )
-            }),
-        },
-        Experiment {
-            name: "valve_reversals",
-            instruction: format!(
-                "without a workpiece, reverse the valve in mid-stroke, every 0.15 s, at {:.1} bar, for 6 s",
-                0.6 * high
-            ),
-            inputs: limits.inputs(6.0, |t| (0.6 * top, first_half(t, 0.15), free)),
-        },
-        Experiment {
-            name: "slow_ride",
-            instruction: format!(
-                "at a constant {:.1} bar, move the surface {:.0} mm to either side of {:.0} mm at 0.3 Hz, for 10 s",
-                0.5 * high,
-                mm(travel),
-                mm(surface)
-            ),
-            inputs: limits.inputs(10.0, ride(0.3)),
-        },
-        Experiment {
-            name: "fast_ride",
-            instruction: format!(
-                "at a constant {:.1} bar, move the surface {:.1} mm to either side of {:.0} mm at 3 Hz, for 6 s",
-                0.5 * high,
-                mm(0.2 * travel),
-                mm(surface)
-            ),
-            inputs: limits.inputs(6.0, move |t| {
-                let (pressure, extends, at) = ride(3.0)(t);
-                (pressure, extends, surface + 0.2 * (at - surface))
-            }),
-        },
-        Experiment {
-            name: "dwell",
-            instruction: format!("with {fixed}, hold {:.1} bar for 15 s", 0.5 * high),
-            inputs: limits.inputs(15.0, |_| (0.5 * top, true, surface)),
-        },
-    ]
+            surface + travel * on * (TAU * frequency * t).sin()
+        };
+        [
+            Experiment {
+                name: "slow_ride",
+                instruction: format!(
+                    "at a constant {:.1} bar, move the surface {:.0} mm to either side of {:.0} mm at 0.3 Hz, for 10 s",
+                    bar(half),
+                    mm(travel),
+                    mm(surface)
+                ),
+                inputs: self.inputs(10.0, |t| (half, true, ride(t, 0.3))),
+            },
+            Experiment {
+                name: "fast_ride",
+                instruction: format!(
+                    "at a constant {:.1} bar, move the surface {:.1} mm to either side of {:.0} mm at 3 Hz, for 6 s",
+                    bar(half),
+                    mm(0.2 * travel),
+                    mm(surface)
+                ),
+                inputs: self.inputs(6.0, |t| {
+                    (half, true, surface + 0.2 * (ride(t, 3.0) - surface))
+                }),
+            },
+        ]
+    }
+}
+
+fn bar(pressure: f64) -> f64 {
+    pressure * 1e-5
+}
+
+fn mm(length: f64) -> f64 {
+    length * 1e3
 }
