@@ -8,6 +8,7 @@ use super::document::{Document, read_text};
 use super::error::ScenarioError;
 use super::file::{ModelFile, SCHEMA};
 use super::judged;
+use super::keys::Table;
 use super::rig_file::blank;
 use super::units::Unit;
 use crate::plant::{Number, registry};
@@ -41,6 +42,13 @@ pub(super) fn load_with_overrides(
             .collect(),
         ideal,
     };
+    let known = ModelKeys::keys();
+    if let Some(unknown) =
+        (file.judged.iter()).find(|key| !known.iter().any(|own| own.name == **key))
+    {
+        let expected = "keys of [device]".to_owned();
+        return Err(Section::new(&document, "").refuse("judged", format!("{unknown:?}"), expected));
+    }
     let mut plant = blank();
     let is_part = |number: &Number| registry::PARTS.iter().any(|part| part.name == number.name);
     for number in registry::all().filter(|number| number.device_key.is_some()) {
@@ -61,7 +69,9 @@ pub(super) fn load_with_overrides(
         housing_centre_of_mass: model.number(&registry::HOUSING_CENTRE)?,
         tool_centre: model.number(&registry::TOOL_CENTRE)?,
         tool_radius: model.number(&registry::TOOL_RADIUS)?,
-        judged: judged::of_model(&text, |key| model.stands_above(key)),
+        judged: judged::of_model(&file.judged, &file.device.numbers, |key| {
+            model.stands_above(key)
+        }),
     };
     model.check()?;
     Ok(device)

@@ -154,6 +154,8 @@ keys! {
     pub(super) struct ModelFile {
         /// version of this format
         schema: u32 = "schema" in 1..=2;
+        /// keys of its values that rest on no public measurement; reports say where such a value is in use
+        judged: Vec<String> = "judged", shown "none";
         device: ModelKeys = "device";
     }
 

@@ -1,4 +1,6 @@
-//! Values in use that rest on no public measurement. Where a key is declared says so, or what stands behind it in the device model file.
+//! Values in use that rest on no public measurement. Where a key is declared says so, or the device model file of its own.
+
+use std::collections::BTreeMap;
 
 use serde::Serialize;
 
@@ -8,8 +10,6 @@ use super::suggestion::join;
 
 /// What the values of a device decide.
 const OF_DEVICE: &str = "contact force and stroke";
-/// Mark of a value in a device model file.
-const MARK: &str = "judged";
 
 /// A value in use that nobody has measured in public.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -46,23 +46,21 @@ pub(super) fn of_cell(document: &Document<'_>, tables: &[(String, Vec<Key>)]) ->
     judged
 }
 
-/// Values of a device model file that are marked so there, but for those given above it and those that switch something off.
-pub(super) fn of_model(text: &str, is_given: impl Fn(&str) -> bool) -> Vec<JudgedValue> {
-    let marked = text.lines().filter_map(|line| {
-        let (code, remark) = line.split_once('#')?;
-        let (key, value) = code.split_once('=')?;
-        let (key, value) = (key.trim(), value.trim());
-        let off = value
-            .parse::<f64>()
-            .is_ok_and(|value| value == 0.0 || value.is_infinite());
-        let judged = remark.trim_start().starts_with(MARK) && !off && !is_given(key);
-        judged.then(|| JudgedValue {
-            key: format!("device.{key}"),
-            default: true,
-            decides: OF_DEVICE.to_owned(),
-        })
+/// Values of a device model file that it says are judged, but for those given above it and those that switch something off.
+pub(super) fn of_model(
+    judged: &[String],
+    numbers: &BTreeMap<&'static str, f64>,
+    is_given: impl Fn(&str) -> bool,
+) -> Vec<JudgedValue> {
+    let off = |value: &f64| *value == 0.0 || value.is_infinite();
+    let is_off = |key: &str| numbers.get(key).is_some_and(off);
+    let in_use = judged.iter().filter(|key| !is_off(key) && !is_given(key));
+    let found = in_use.map(|key| JudgedValue {
+        key: format!("device.{key}"),
+        default: true,
+        decides: OF_DEVICE.to_owned(),
     });
-    marked.collect()
+    found.collect()
 }
 
 #[cfg(test)]
@@ -74,9 +72,16 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_models_marks_are_read_where_something_is_on() {
-        let text = "a_n = 3   # judged: as usual\nb_n = 0 # judged\nc = inf # judged\nd = 2 # spec\n# judged = 4\ne = \"wall\" # judged\nf = 1 # judged\n";
-        let found = of_model(text, |key| key == "f");
+    fn a_models_judged_values_count_where_something_is_on() {
+        let judged = ["a_n", "b_n", "c", "e", "f"].map(str::to_owned);
+        let numbers = [
+            ("a_n", 3.0),
+            ("b_n", 0.0),
+            ("c", f64::INFINITY),
+            ("d", 2.0),
+            ("f", 1.0),
+        ];
+        let found = of_model(&judged, &BTreeMap::from(numbers), |key| key == "f");
         let keys: Vec<&str> = found.iter().map(|value| value.key.as_str()).collect();
         assert_eq!(keys, ["device.a_n", "device.e"]);
     }

@@ -56,7 +56,7 @@ fn devices_that_cannot_be() {
         ),
         refusal(
             |b| device(b, "bore_mm = 11"),
-            &["device.toml:15:1: `device.rod_mm` is 12 mm, expected less than bore_mm, 11 mm"],
+            &["device.toml:30:1: `device.rod_mm` is 12 mm, expected less than bore_mm, 11 mm"],
         ),
         refusal(
             |b| device(b, "supply_orifice_mm2 = -2.5"),
