@@ -145,7 +145,7 @@ fn a_run_in_which_bodies_meet_stops_and_keeps_what_was_recorded() {
         DVec3::splat(0.04),
         DVec3::new(-3.0, 0.0, 1.0),
     );
-    let mut model = Cell::new(far).unwrap().collision;
+    let mut model = Cell::new(far).unwrap().setup.collision;
     model.move_body("post", DPose3::from_translation(place));
     cell.setup.collision = model;
     let finished = run_cell(&cell, &mut |_, _| ()).unwrap();

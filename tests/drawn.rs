@@ -171,6 +171,7 @@ fn what_is_checked_for_collisions_is_where_the_links_and_obstacles_are() {
     for (index, name) in cell.setup.arm.link_names.iter().enumerate() {
         let (corners, frame) = mesh(&store, &format!("/cell/collision/{name}"));
         let own = cell
+            .setup
             .arm
             .visuals
             .iter()

@@ -72,6 +72,7 @@ fn no_drive_gives_more_than_its_limit_and_a_run_at_it_says_so() {
     let free = run(short());
     let cell = Cell::new(short()).unwrap();
     let names: Vec<String> = cell
+        .setup
         .arm
         .chain
         .joints

@@ -26,7 +26,7 @@ fn belt() -> Scenario {
     let mut cell = scenario("plate_edge_ideal");
     cell.process.force = 60.0;
     cell.process.settle_time = 0.5;
-    cell.setup.passes = vec![pass(60.0, 40e-3)];
+    cell.passes = vec![pass(60.0, 40e-3)];
     cell.tool = Some(ToolScenario {
         tool: TurningTool {
             shape: ToolShape::Belt { wheel_radius: 0.02 },
@@ -120,7 +120,7 @@ fn what_the_edge_lost_is_the_integral_of_the_removal_rate() {
         height_deviation: 0.08e-3,
         correlation_length: 6e-3,
     };
-    cell.setup.passes = vec![pass(60.0, 40e-3), pass(45.0, 60e-3)];
+    cell.passes = vec![pass(60.0, 40e-3), pass(45.0, 60e-3)];
     let run = done(cell);
     let (volume, integral) = (run.volume(), run.integral());
     assert!(run.stop.is_none() && volume > 1e-8);
@@ -199,7 +199,7 @@ fn a_second_pass_meets_what_the_first_left() {
         width: 12e-3,
     };
     cell.workpiece.burr_root = 0.2e-3;
-    cell.setup.passes = vec![pass(60.0, 40e-3), pass(60.0, 40e-3)];
+    cell.passes = vec![pass(60.0, 40e-3), pass(60.0, 40e-3)];
     let run = done(cell);
     let stroke = run.of(schema::STROKE);
     let used = |name: &str| {
@@ -221,7 +221,7 @@ fn a_force_that_varies_is_a_section_that_varies_by_the_exponent() {
     for exponent in [1.0, 2.05] {
         let of = |force: f64| {
             let mut cell = belt();
-            cell.setup.passes = vec![pass(force, 40e-3)];
+            cell.passes = vec![pass(force, 40e-3)];
             let removal = cell.removal.as_mut().unwrap();
             removal.law.reference_force = 60.0;
             removal.law.rate = COEFFICIENT * 60.0;
@@ -351,7 +351,7 @@ fn off_five_newtons(other: &str, controlled: bool) -> f64 {
         cell.simulation.gravity = glam::DQuat::from_rotation_y(turn.to_radians()) * gravity;
         cell.device.parameters.opposing_pressure = 0.5e5;
         cell.process.force = 5.0;
-        cell.setup.passes = vec![pass(5.0, 20e-3)];
+        cell.passes = vec![pass(5.0, 20e-3)];
         cell.expect.clear();
         let cell = Cell::new(cell).unwrap_or_else(|error| panic!("{turn}: {error}"));
         let [along, _] = cell.gravity_on_edge;

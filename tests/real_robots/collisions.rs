@@ -88,6 +88,7 @@ fn document(cell: &Cell, random: &mut ChaCha8Rng) -> (Value, Vec<Vec<bool>>) {
         matches!(body.mount, Mount::Link(_)) || body.name == cell.setup.arm.link_names[0]
     };
     let robot: Vec<Value> = cell
+        .setup
         .collision
         .bodies()
         .filter(of_robot)
