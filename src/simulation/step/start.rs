@@ -3,11 +3,19 @@
 use glamx::DPose3;
 
 use crate::arm::chain::MAX_JOINTS;
-use crate::arm::dynamics::inverse_dynamics;
+use crate::arm::dynamics::{inverse_dynamics, mass_matrix};
 use crate::cell::Cell;
 use crate::collision::ClearanceWatch;
 use crate::control::servo::{Servo, ServoParameters};
 use crate::control::transmission::Motor;
+
+/// Inertia of each of the arm's axes about itself, the others held, with the slide where it starts [kg m2].
+pub(super) fn inertias(cell: &Cell, positions: &[f64]) -> Vec<f64> {
+    let count = positions.len();
+    let mut masses = nalgebra::DMatrix::zeros(count, count);
+    mass_matrix(&cell.setup.arm_with_slide, positions, &mut masses);
+    (0..count - 1).map(|i| masses[(i, i)]).collect()
+}
 
 /// The servo of all axes, each about its own inertia [kg m2].
 pub(super) fn servo(cell: &Cell, inertias: &[f64]) -> Servo {
