@@ -315,7 +315,10 @@ pub enum Start<'a, S: Subject = Device> {
     Where(&'a S::Model),
 }
 
-// By hand: a derive asks that the model itself may be copied.
+#[expect(
+    clippy::expl_impl_clone_on_copy,
+    reason = "a derive asks that the model itself may be copied"
+)]
 impl<S: Subject> Clone for Start<'_, S> {
     fn clone(&self) -> Self {
         *self

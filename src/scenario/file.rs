@@ -305,7 +305,7 @@ keys! {
         margin: f64 = "margin_mm" in 0..=200, or 5.0;
         /// height of the floor in the world; when left out, 0 unless base, part or an obstacle stands below that, and then there is none
         floor_height: Option<f64> = "floor_height_mm" in -1e5..=1e5;
-        /// bodies that may meet, by the names of the links, `device`, `tool`, `part`, `floor` and the obstacles, as in [["forearm", "hose"]]
+        /// bodies that may meet, by the names of the links, `device`, `tool`, `part`, `floor` and the obstacles, as in `[["forearm", "hose"]]`
         allowed_pairs: Option<Vec<[String; 2]>> = "allowed_pairs";
     }
 

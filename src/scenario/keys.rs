@@ -460,7 +460,7 @@ pub(crate) fn table_schema(about: &str, keys: &[Key]) -> Value {
     let mut schema = json!({
         "type": "object",
         "description": about.trim_ascii(),
-        "properties": Map::from_iter(properties),
+        "properties": properties.collect::<Map<_, _>>(),
         "additionalProperties": false,
     });
     if !required.is_empty() {

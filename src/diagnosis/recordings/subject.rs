@@ -139,7 +139,7 @@ mod tests {
     fn fills(given: usize) -> Evidence<Tank> {
         let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(3);
         let fill = |input: f64| {
-            let time: Vec<f64> = (0..300).map(|i| 0.01 * i as f64).collect();
+            let time: Vec<f64> = (0..300).map(|i| 0.01 * f64::from(i)).collect();
             let inputs = (time, input, given);
             let mut readings = Tank::simulate(&TRUTH, &inputs, false, None, None);
             for (readings, noise) in readings.iter_mut().zip(NOISE) {

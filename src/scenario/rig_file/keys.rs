@@ -118,7 +118,7 @@ static TABLES: LazyLock<Vec<(&str, Vec<&str>)>> = LazyLock::new(|| {
 /// Tables of a rig file with their keys.
 pub(super) fn sections() -> Vec<(String, Vec<&'static str>)> {
     let mut sections = vec![
-        ("".to_owned(), names_of::<RigKeys>().to_vec()),
+        (String::new(), names_of::<RigKeys>().to_vec()),
         ("rig".to_owned(), names_of::<PartKeys>().to_vec()),
         (
             "recordings".to_owned(),

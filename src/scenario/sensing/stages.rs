@@ -204,7 +204,7 @@ pub fn filter(section: &Section<'_>, keys: &FilterKeys, rate: f64) -> Result<Fil
         }
         FilterKind::Median => {
             let length = keys.length.unwrap_or_default();
-            if length % 2 == 0 {
+            if length.is_multiple_of(2) {
                 let expected = "an odd number".to_owned();
                 return Err(section.refuse("length", length.to_string(), expected));
             }
