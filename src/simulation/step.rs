@@ -114,9 +114,8 @@ impl<'a> Simulation<'a> {
         let reference = cell.plan.reference(0.0);
         let gravity = cell.gravity_along(reference.axis);
         let desired = cell.setup.passes[0].force * reference.share;
-        let set_pressure =
-            PressureMap::new(&scenario.device.parameters).set_pressure(desired, gravity);
         let parameters = &scenario.device.parameters;
+        let set_pressure = PressureMap::new(parameters).set_pressure(desired, gravity);
         let stroke = if scenario.device.locked {
             scenario.process.working_stroke
         } else {
@@ -127,13 +126,11 @@ impl<'a> Simulation<'a> {
         let at_rest = (motion, cell.device.at_rest(stroke, set_pressure));
         let device = RunningDevice::new(&cell.setup.plant, &cell.device, at_rest);
         let mut positions = cell.plan.start();
-        for (position, offset) in positions
-            .iter_mut()
-            .zip(cell.setup.plant.cell.encoder_offset)
-        {
+        let arm = &cell.setup.plant.cell;
+        for (position, offset) in positions.iter_mut().zip(arm.encoder_offset) {
             *position -= offset;
         }
-        let bandwidth = cell.setup.plant.cell.servo_bandwidth;
+        let bandwidth = arm.servo_bandwidth;
         let lag = |start: &f64| CommandLag::at_rest(bandwidth, *start);
         let lags = match bandwidth.is_finite() {
             true => positions.iter().map(lag).collect(),
