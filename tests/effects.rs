@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use idc_cell::effects::{Effect, kinds};
+use idc_cell::effects::{Effect, NUMBERS_OFF, kinds};
 
 use crate::common::project;
 use crate::help::place;
@@ -10,6 +10,28 @@ use crate::program::Bench;
 
 fn name(effect: &Effect) -> &'static str {
     effect.vocabulary().0
+}
+
+/// A diagnosis that names `number_off` sent its reader to a command that said "there is no effect of this name".
+#[test]
+fn a_number_that_is_off_is_explained_with_its_keys() {
+    let bench = Bench::new("paper_step");
+    let said = bench.idc(&["effects", "number_off"], &[]);
+    assert_eq!((said.code, said.err.as_str()), (0, ""));
+    let json = bench.idc(&["effects", "number_off", "--json"], &[]).out;
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let keys = json["keys"].as_array().unwrap();
+    assert_eq!(keys.len(), NUMBERS_OFF.len());
+    let keys: Vec<&str> = keys.iter().map(|key| key.as_str().unwrap()).collect();
+    assert!(keys.contains(&"cylinder.bore_m"), "{keys:?}");
+    for key in keys {
+        assert!(said.out.contains(key), "{}", said.out);
+    }
+    assert!(
+        said.out.lines().all(|line| line.len() <= 90),
+        "{}",
+        said.out
+    );
 }
 
 #[test]

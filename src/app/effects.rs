@@ -12,7 +12,7 @@ use clap::Args;
 use super::error::{AppError, ExitCode};
 use super::files::{Standing, prepare_file};
 use super::output::say;
-use crate::effects::{Effect, kinds};
+use crate::effects::{Effect, NUMBER_OFF, NUMBERS_OFF, kinds};
 use crate::recording::atomic::write_text;
 use crate::scenario::suggestion::nearest;
 use page::{Explained, by_subsystem};
@@ -81,6 +81,14 @@ pub(super) fn run(arguments: &EffectsArguments) -> Result<ExitCode, AppError> {
         }
         return Ok(ExitCode::Done);
     };
+    if name == NUMBER_OFF && arguments.out.is_none() {
+        if arguments.json {
+            say(&format!("{:#}\n", number_off()))?;
+        } else if !arguments.quiet {
+            say(&number_off_text())?;
+        }
+        return Ok(ExitCode::Done);
+    }
     let effect = named(name)?;
     let stage = Stage::new(&scene::of(effect).scene)?;
     if let Some(file) = &arguments.out {
@@ -105,6 +113,27 @@ fn named(name: &str) -> Result<&'static Effect, AppError> {
         name: name.to_owned(),
         advice: nearest(name, &known),
     })
+}
+
+/// Meaning of [`NUMBER_OFF`], which is no law and so has no picture.
+const OFF: &str =
+    "A number of the rig file is not what the file says, by more than its tolerance allows.";
+
+/// It, for programs.
+fn number_off() -> serde_json::Value {
+    let keys: Vec<&str> = NUMBERS_OFF.iter().filter_map(Effect::number_key).collect();
+    serde_json::json!({ "name": NUMBER_OFF, "meaning": OFF, "keys": keys })
+}
+
+/// It, for people.
+fn number_off_text() -> String {
+    let keys: Vec<&str> = NUMBERS_OFF.iter().filter_map(Effect::number_key).collect();
+    format!(
+        "{NUMBER_OFF}\n\n{OFF}\n\
+         A diagnosis tries each of these beside the laws, and names it by its key:\n\n  {}\n\n\
+         Others are found as the effect that says the same (moving_mass_error, extra_dead_volume ..).\n",
+        keys.join("\n  ")
+    )
 }
 
 /// For people.
