@@ -64,6 +64,7 @@ impl<'a> Section<'a> {
     }
 
     /// A whole number within a range.
+    #[cfg(feature = "import")]
     pub fn count<T: PartialOrd + Copy + std::fmt::Display>(
         &self,
         key: &str,

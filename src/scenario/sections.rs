@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error, Visitor};
 
 use super::bench_file::BenchFile;
-use super::file::{ModelFile, ScenarioFile};
+use super::file::ScenarioFile;
 use super::keys::{names, tables};
 
 /// Tables of a scenario file with their keys; `*` stands for a name that the user gives.
@@ -18,8 +18,9 @@ pub(crate) fn bench_sections() -> Vec<(String, Vec<&'static str>)> {
 }
 
 /// Tables of a device model file with their keys.
+#[cfg(feature = "cli")]
 pub(crate) fn model_sections() -> Vec<(String, Vec<&'static str>)> {
-    names(&tables::<ModelFile>())
+    names(&tables::<super::file::ModelFile>())
 }
 
 /// Keys of one table: the derived code hands its field names to the deserializer, which keeps them and stops.
