@@ -28,7 +28,7 @@ fn a_number_that_is_off_is_explained_with_its_keys() {
         assert!(said.out.contains(key), "{}", said.out);
     }
     assert!(
-        said.out.lines().all(|line| line.len() <= 90),
+        said.out.lines().all(|line| line.len() <= 80),
         "{}",
         said.out
     );

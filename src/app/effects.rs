@@ -116,8 +116,7 @@ fn named(name: &str) -> Result<&'static Effect, AppError> {
 }
 
 /// Meaning of [`NUMBER_OFF`], which is no law and so has no picture.
-const OFF: &str =
-    "A number of the rig file is not what the file says, by more than its tolerance allows.";
+const OFF: &str = "A number of the rig file that is off by more than its tolerance allows.";
 
 /// It, for programs.
 fn number_off() -> serde_json::Value {
@@ -131,7 +130,7 @@ fn number_off_text() -> String {
     format!(
         "{NUMBER_OFF}\n\n{OFF}\n\
          A diagnosis tries each of these beside the laws, and names it by its key:\n\n  {}\n\n\
-         Others are found as the effect that says the same (moving_mass_error, extra_dead_volume ..).\n",
+         Others are found as an effect that says the same (moving_mass_error ..).\n",
         keys.join("\n  ")
     )
 }
