@@ -216,7 +216,7 @@ impl<'a> Replay<'a> {
             load.stroke = Cubic::hermite(span.length, ends.map(|j| self.surface[j]), slopes);
         }
         let set_pressure = inputs.set_pressure[i];
-        // Of what moves with a term a sample is told as it is then, and a step as it is in its middle.
+        // Of what moves with a term a sample takes what is then, and a step what is in its middle.
         let moment = (rig.device).meet_terms(&mut load, set_pressure, inputs.surface[i]);
         let deflected = rig.joints.as_mut().map_or_else(Default::default, |joints| {
             joints.face(i, riding.map(|riding| riding.normal));

@@ -82,7 +82,7 @@ keys! {
         at: f64 = "at_s", being "within the run";
         /// set pressure of the regulator; at most what a real `[sensing.command]` can give
         set_pressure: Option<f64> = "set_pressure_bar_gauge" in 0..=16, shown "one of the two";
-        /// contact force, for the `[controller]`; within what the regulator can be told
+        /// contact force, for the `[controller]`; within what the regulator can be set to
         force: Option<f64> = "force_n" in 0..=5000, shown "one of the two";
     }
 

@@ -94,7 +94,7 @@ pub(super) fn estimator(
     keys: &EstimatorKeys,
     base: &EstimatorBase<'_>,
 ) -> Result<ContactForceEstimator, ScenarioError> {
-    let device = believed_device(keys, base.device);
+    let device = nominal_device(keys, base.device);
     let parameters = EstimatorParameters {
         gravity_along_axis: base.gravity_along_extension,
         ..EstimatorParameters::new(noise(keys, base.sensing), tolerances(keys))
@@ -117,10 +117,10 @@ pub(super) fn estimator(
 }
 
 /// The device as it is nominally.
-fn believed_device(keys: &EstimatorKeys, device: &DeviceParameters) -> DeviceParameters {
-    let mut believed = device.clone();
-    believed.moving_mass = keys.moving_mass_value.unwrap_or(device.moving_mass);
-    let seals = &mut believed.seal_friction;
+fn nominal_device(keys: &EstimatorKeys, device: &DeviceParameters) -> DeviceParameters {
+    let mut nominal = device.clone();
+    nominal.moving_mass = keys.moving_mass_value.unwrap_or(device.moving_mass);
+    let seals = &mut nominal.seal_friction;
     let coulomb = keys.seal_coulomb_force.unwrap_or(seals.coulomb);
     seals.static_force = if seals.coulomb > 0.0 {
         seals.static_force * coulomb / seals.coulomb
@@ -128,7 +128,7 @@ fn believed_device(keys: &EstimatorKeys, device: &DeviceParameters) -> DevicePar
         coulomb.max(seals.static_force)
     };
     seals.coulomb = coulomb;
-    believed
+    nominal
 }
 
 /// Standard deviations of the sensors as the file gives them, else as `[sensing]` makes them; rounding to a step is an error even within it

@@ -283,7 +283,7 @@ impl Key {
     }
 
     /// Words for what leaving it out does.
-    pub fn told(mut self, words: &'static str) -> Self {
+    pub fn default_shown(mut self, words: &'static str) -> Self {
         self.default_words = Some(words);
         self.is_required = false;
         self
@@ -375,7 +375,7 @@ impl Key {
         format!("| `{}` | {meaning} | {default} |", self.name)
     }
 
-    /// What an editor is told of it.
+    /// JSON Schema of it, as editors show it.
     fn described(&self) -> Value {
         let mut schema = (self.schema)();
         let [unit, default, range, meaning] = self.columns();
@@ -388,7 +388,10 @@ impl Key {
         if has_unit || unit.starts_with("table") {
             text += &format!(" [{unit}]");
         }
-        if !range.is_empty() {
+        let values = schema.get("enum").and_then(Value::as_array);
+        let mut values = values.into_iter().flatten().filter_map(Value::as_str);
+        let are_said = schema.get("enum").is_some() && values.all(|value| text.contains(value));
+        if !range.is_empty() && !are_said {
             text += &format!(", {range}");
         }
         text += &match default.as_str() {
@@ -558,8 +561,8 @@ pub(crate) fn default_of_si(key: &str, value: f64) -> Default {
 
 /// A table of a file: its keys, each with what it means, the field that it fills in SI, its name, and
 /// whether it `must stand` though its type could do without, `for` which kinds of the table it is, `in` which range [its unit], `of` which number of the description (whose range and default it has),
-/// `or` which default [its unit], `from` which default in SI, `else` which value of fields before it, `shown` how that is told, `being` how what is allowed is
-/// told, and what of a value that was never measured in public is `judged`.
+/// `or` which default [its unit], `from` which default in SI, `else` which value of fields before it, `shown` how that reads, `being` how what is allowed
+/// reads, and what of a value that was never measured in public is `judged`.
 macro_rules! keys {
     ($(
         $(#[doc = $about:literal])+
@@ -582,7 +585,7 @@ macro_rules! keys {
                 vec![$(
                     $crate::scenario::keys::Key::new::<$type>($key, concat!($($meaning),*))
                         $(.must(stringify!($stand)))? $(.of_kinds(&[$($kind),+]))? $(.within($range))? $(.known(&$number))? $(.by_default($default))?
-                        $(.by_default($crate::scenario::keys::default_of_si($key, $si)))? $(.told($words))? $(.being($being))? $(.judged($decides))?,
+                        $(.by_default($crate::scenario::keys::default_of_si($key, $si)))? $(.default_shown($words))? $(.being($being))? $(.judged($decides))?,
                 )+]
             }
         }

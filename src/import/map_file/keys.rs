@@ -45,7 +45,7 @@ keys! {
         /// of a spreadsheet: the sheet
         sheet: Option<String> = "sheet", shown "the only one that holds anything; refused where there are several";
         /// of a text: `"utf-8"`, `"windows-1252"`, `"utf-16le"`, `"utf-16be"` or another that the WHATWG lists
-        encoding: Option<String> = "encoding", shown "told by its bytes; refused where they do not tell";
+        encoding: Option<String> = "encoding", shown "detected from its bytes; refused where they do not decide";
         /// of a text: a character, `"tab"` or `"whitespace"` (any number of spaces and tabs)
         separator: Option<String> = "separator", shown "\",\"";
         /// of a text: the characters of each field, in place of a separator
@@ -99,7 +99,7 @@ keys! {
         /// of stamps in a text: where the dates stand, if not beside the times
         date_column: Option<ColumnKey> = "date_column";
         /// of stamps in a text: `"day-month-year"`, `"month-day-year"` or `"year-month-day"`
-        date_order: Option<DateOrderKey> = "date_order", shown "told by all dates together; refused where none tells";
+        date_order: Option<DateOrderKey> = "date_order", shown "decided by all dates together; refused where none does";
         /// of stamps whose dates have none: the year
         year: Option<i32> = "year" in 1970..=2200, shown "such dates are refused";
         /// of stamps such as `14:02`: `"mm:ss"` or `"hh:mm"`

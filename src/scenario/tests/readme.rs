@@ -68,7 +68,7 @@ fn page(text: &str) -> (String, Vec<(&str, String)>) {
     const HEAD: &str =
         "| key | unit | default | range | meaning |\n| --- | --- | --- | --- | --- |\n";
     let kinds = kinds();
-    let (mut page, mut told) = (String::new(), Vec::new());
+    let (mut page, mut listed) = (String::new(), Vec::new());
     let mut lines = text.lines().peekable();
     while let Some(line) = lines.next() {
         page += &format!("{line}\n");
@@ -87,17 +87,17 @@ fn page(text: &str) -> (String, Vec<(&str, String)>) {
             for row in keys.iter().filter_map(|key| key.row(name)) {
                 page += &format!("{row}\n");
             }
-            told.push((*kind, name.to_owned()));
+            listed.push((*kind, name.to_owned()));
         }
     }
-    (page, told)
+    (page, listed)
 }
 
 #[test]
 fn the_page_tells_the_keys_as_they_are_declared() {
     let path = scenarios().join("README.md");
     let text = std::fs::read_to_string(&path).unwrap();
-    let (page, told) = page(&text);
+    let (page, listed) = page(&text);
     if std::env::var_os("IDC_UPDATE_SCHEMAS").is_some() {
         std::fs::write(&path, &page).unwrap();
     }
@@ -113,11 +113,15 @@ fn the_page_tells_the_keys_as_they_are_declared() {
             let of_cell = cell
                 .iter()
                 .any(|(own, others)| own == table && same(others) == same(keys));
-            let is_told = |kind| told.iter().any(|(own, name)| *own == kind && name == table);
+            let is_listed = |kind| {
+                listed
+                    .iter()
+                    .any(|(own, name)| *own == kind && name == table)
+            };
             let is_by_pass = table == "pass.expect.*";
             let is_top = table.is_empty();
             assert!(
-                is_told(kind) || (of_cell && is_told("cell")) || is_by_pass || is_top,
+                is_listed(kind) || (of_cell && is_listed("cell")) || is_by_pass || is_top,
                 "{kind}: {table}"
             );
         }
