@@ -13,6 +13,7 @@
 //! - [`sensing`]: the chain between controller and device: converters, amplifiers, filters, sensors
 //! - [`control`]: joint servo and force controllers
 //! - [`estimation`]: contact force without a load cell, with its uncertainty
+//! - [`keys`]: keys of files as they are declared: read, checked, in SI
 //! - [`shell`]: paths as a shell takes them
 //! - [`scenario`]: the file that says what to simulate, checked
 //! - [`cell`]: all of it assembled and checked
@@ -20,12 +21,15 @@
 //! - [`place`]: where the part of a cell can lie
 //! - [`simulation`]: the coupled step
 //! - [`rig`]: the bench rig, the device without an arm
-//! - [`recording`]: sampled signals, CSV, Parquet, Rerun
+//! - [`recording`]: sampled signals, CSV, Parquet
+//! - [`scene`]: a recording in space
+//! - `viewer`: both for Rerun's viewer
 //! - [`metrics`]: the numbers of a run
 //! - [`run`]: a scenario run to its end, with its numbers
 //! - [`report`]: tables for people
 //! - [`design`]: the design study
 //! - [`plant`]: a rig as one description of numbers, driven by the inputs of a recording
+//! - [`flange`]: another device, a contact flange
 //! - [`replay`]: the loads of the device in a recorded cell, from the arm's commands
 //! - [`effects`]: the physics that a description may lack, one effect a file
 //! - [`import`]: logs of real devices made into recordings
@@ -62,10 +66,12 @@ pub mod effects;
 pub mod estimation;
 #[cfg(feature = "cli")]
 pub mod figure;
+pub mod flange;
 #[cfg(feature = "cli")]
 pub mod fleet;
 #[cfg(feature = "import")]
 pub mod import;
+pub mod keys;
 #[cfg(feature = "cli")]
 pub mod laboratory;
 pub mod mesh_file;
@@ -88,6 +94,7 @@ pub mod report;
 pub mod rig;
 pub mod run;
 pub mod scenario;
+pub mod scene;
 pub mod sensing;
 pub mod shell;
 pub mod simulation;
@@ -96,6 +103,8 @@ pub mod stats;
 pub mod tasks;
 #[cfg(feature = "cli")]
 pub mod vary;
+#[cfg(feature = "viewer")]
+pub mod viewer;
 pub mod workpiece;
 
 pub use case::{Case, Diagnosed, diagnose};

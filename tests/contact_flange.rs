@@ -6,7 +6,7 @@ use idc_cell::cell::Cell;
 use idc_cell::diagnosis::flange::fit::report::SimulatedRun;
 use idc_cell::diagnosis::flange::fit::{fit_flange, predict_flange};
 use idc_cell::diagnosis::flange::{ForceRamp, Run};
-use idc_cell::plant::flange::{FlangeCourse, FlangeModel, Reader, SAMPLED, flange_force};
+use idc_cell::flange::{FlangeCourse, FlangeModel, Reader, SAMPLED, flange_force};
 use idc_cell::recording::schema;
 use idc_cell::scenario::Scenario;
 

@@ -8,11 +8,11 @@ use idc_cell::app::{edge_course, finished_edge, scene_of};
 use idc_cell::arm::VisualShape;
 use idc_cell::cell::Cell;
 use idc_cell::recording::csv::EdgeProfile;
-use idc_cell::recording::finished_edge::EdgeMoment;
-use idc_cell::recording::rerun::{RerunOptions, write_rrd};
-use idc_cell::recording::scene::Scene;
 use idc_cell::run::run_cell;
 use idc_cell::scenario::{BurrScenario, Obstacle, ObstacleShape};
+use idc_cell::scene::Scene;
+use idc_cell::scene::finished_edge::EdgeMoment;
+use idc_cell::viewer::{RerunOptions, write_rrd};
 use rerun::{
     ChunkStore, ChunkStoreConfig, CoordinateFrame, LineStrips3D, Mesh3D, TextDocument, Transform3D,
 };

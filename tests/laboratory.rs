@@ -13,8 +13,8 @@ use idc_cell::physics::regulator::{RateLimit, RegulatorParameters, SecondOrder};
 use idc_cell::physics::seal_friction::SealFriction;
 use idc_cell::physics::supply_reservoir::SupplyReservoir;
 use idc_cell::plant::{
-    Chain, ContactLaw, ContactParameters, InitialState, LinkParameters, Periodic, PlantInputs,
-    PlantParameters, SensorErrors, simulate,
+    ContactLaw, ContactParameters, DeviceParts, InitialState, LinkParameters, Periodic,
+    PlantInputs, PlantParameters, SensorErrors, simulate,
 };
 use rand::{Rng, SeedableRng};
 use rand_distr::StandardNormal;
@@ -65,7 +65,7 @@ pub fn plant_of(rig: &LaboratoryRig) -> PlantParameters {
         sensors: SensorErrors::NONE,
         latent: None,
         own: Vec::new(),
-        chain: Chain::Whole,
+        parts: DeviceParts::Whole,
         links: LinkParameters::NONE,
         cell: idc_cell::plant::CellParameters::RIGID,
     }

@@ -286,7 +286,7 @@ fn the_checkers_see_what_they_look_for() {
         ("use rerun::Scalars;", true),
         ("use ::rerun::Scalars;", true),
         ("use rerun as r;", true),
-        ("use crate::recording::rerun::write_rrd;", false),
+        ("use crate::viewer::write_rrd;", false),
         ("let rerun = 1;", false),
         ("use rerun_sdk::X;", false),
     ] {

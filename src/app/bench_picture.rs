@@ -4,11 +4,11 @@ use glam::{DQuat, DVec3};
 use glamx::DPose3;
 
 use super::picture::{PART, device_bodies};
-use crate::recording::scene::{
-    ContactArrow, EdgePath, Scene, SceneBody, SceneGeometry, SceneLimits, ScenePoses, SceneShape,
-};
 use crate::recording::{Recording, RecordingError, schema};
 use crate::scenario::BenchScenario;
+use crate::scene::{
+    ContactArrow, EdgePath, Scene, SceneBody, SceneGeometry, SceneLimits, ScenePoses, SceneShape,
+};
 
 /// Time between two frames of the picture [s].
 const FRAME_INTERVAL: f64 = 0.02;

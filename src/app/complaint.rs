@@ -19,8 +19,8 @@ use super::error::{AppError, ExitCode};
 use crate::advice::Advice;
 use crate::cell::CellError;
 use crate::design::DesignError;
+use crate::keys::error::Place;
 use crate::metrics::MetricsError;
-use crate::scenario::error::Place;
 use crate::scenario::place_of;
 
 /// The word that an error begins with.

@@ -1,9 +1,9 @@
 //! The edge while it is worked, as a recording's samples tell it: what came off in each step, where the tool was.
 
 use crate::cell::Cell;
-use crate::recording::finished_edge::EdgeMoment;
 use crate::recording::{Recording, RecordingError, schema};
 use crate::removal::EdgeStationState;
+use crate::scene::finished_edge::EdgeMoment;
 
 /// Moments that are drawn, and stations of each at most.
 const MOMENTS: usize = 80;

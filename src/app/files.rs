@@ -12,8 +12,8 @@ use crate::page::Drawing;
 use crate::recording::atomic::{UnfinishedFolder, make_folder, write_text};
 use crate::recording::parquet::write_parquet;
 use crate::recording::provenance::Provenance;
-use crate::recording::scene::Scene;
 use crate::recording::{Recording, RecordingError};
+use crate::scene::Scene;
 
 pub(super) const RECORDING: &str = "recording.rrd";
 pub(super) const SAMPLES: &str = "samples.parquet";

@@ -6,9 +6,9 @@ use std::thread::{Scope, ScopedJoinHandle};
 
 use super::run::{Listener, RunPart};
 use crate::cell::Cell;
-use crate::recording::rerun::{EncodedRrd, GrowingRrd, PART_SAMPLES, RerunOptions};
-use crate::recording::scene::Scene;
 use crate::recording::{Recording, RecordingError};
+use crate::scene::Scene;
+use crate::viewer::{EncodedRrd, GrowingRrd, PART_SAMPLES, RerunOptions};
 
 /// A recording that is encoded while it is made.
 pub(super) struct GrowingFile<'scope> {

@@ -8,15 +8,15 @@ use crate::cell::{Cell, DeviceShape};
 use crate::collision::{Body, Mount, Role};
 use crate::drawing::{CrossSection, cross_section};
 use crate::path::{Phase, Reference};
-use crate::recording::colour::Colour;
 use crate::recording::csv::EdgeProfile;
-use crate::recording::finished_edge::FinishedEdge;
-use crate::recording::scene::{
+use crate::recording::{Recording, RecordingError, schema};
+use crate::scenario::DeviceScenario;
+use crate::scene::colour::Colour;
+use crate::scene::finished_edge::FinishedEdge;
+use crate::scene::{
     CollisionShape, ContactArrow, EdgePath, Scene, SceneBody, SceneGeometry, SceneLimits,
     ScenePoses, SceneShape,
 };
-use crate::recording::{Recording, RecordingError, schema};
-use crate::scenario::DeviceScenario;
 use crate::simulation::FrameLog;
 
 /// Segments of the drawn edge.

@@ -18,8 +18,8 @@ use crate::diagnosis::answer::details::UnknownGround;
 use crate::diagnosis::answer::words::of_column;
 use crate::diagnosis::recordings::clean::clean;
 use crate::diagnosis::recordings::recorded::{COLUMNS, recorded_of};
+use crate::flange::FittedFlange;
 use crate::plant::Channel;
-use crate::plant::flange::FittedFlange;
 use crate::quantity::{counted, significant};
 use crate::recording::atomic::write_text;
 use crate::recording::csv::columns_text;
@@ -141,13 +141,13 @@ fn outs(arguments: &PredictArguments) -> Result<Vec<PathBuf>, AppError> {
 /// Predicts a recording.
 fn of_recording(rig: &RigFile, inputs: &Path, out: PathBuf) -> Result<Made, AppError> {
     let file = inputs.display().to_string();
-    let recording = read_rig(rig.plant.chain, inputs)?;
-    let mut taken = recorded_of(rig.plant.chain, &file, &recording)?.of_sensors(rig.sensors());
+    let recording = read_rig(rig.plant.parts, inputs)?;
+    let mut taken = recorded_of(rig.plant.parts, &file, &recording)?.of_sensors(rig.sensors());
     let time = &taken.inputs.time;
     let of_model = predicted_by(rig, &taken.inputs);
     let predicted = &of_model.readings;
     check_finite(&rig.path.display().to_string(), &file, time, predicted)?;
-    let columns = of_model.columns(&shown_columns(rig.plant.chain, rig.sensors(), predicted));
+    let columns = of_model.columns(&shown_columns(rig.plant.parts, rig.sensors(), predicted));
     let columns: Vec<(&str, &[f64])> = (columns
         .iter()
         .map(|(name, values)| (name.as_str(), values.as_slice())))

@@ -5,9 +5,9 @@ use glam::{DQuat, DVec3};
 use crate::drawing::{self, CELL_EYE, Solid, edge_direction};
 use crate::page::{Drawing, DrawnArrow, DrawnBody, DrawnLegend, DrawnLine, DrawnView, Shade};
 use crate::quantity::with_unit;
-use crate::recording::colour::Colour;
-use crate::recording::error_scale::ErrorScale;
-use crate::recording::scene::Scene;
+use crate::scene::Scene;
+use crate::scene::colour::Colour;
+use crate::scene::error_scale::ErrorScale;
 
 /// Millimetres a metre.
 pub(super) const MILLIMETRES: f64 = 1e3;

@@ -11,7 +11,7 @@ use super::error::{AppError, ExitCode};
 use super::files::{BOARD, RECORDING};
 use super::output::say;
 use super::viewer::{NativeViewer, Served, ViewerError, WebPage};
-use crate::recording::rerun::{check_rrd, viewer_version};
+use crate::viewer::{check_rrd, viewer_version};
 
 /// Served below the help.
 pub(super) const EXAMPLES: &str = "\

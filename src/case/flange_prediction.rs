@@ -6,7 +6,7 @@ use super::error::CaseError;
 use super::rig::flange_run;
 use crate::diagnosis::flange::fit::report::SimulatedRun;
 use crate::diagnosis::flange::fit::{predict_flange, settings_of};
-use crate::plant::flange::FittedFlange;
+use crate::flange::FittedFlange;
 use crate::quantity::significant;
 use crate::scenario::rig_file::RigFile;
 

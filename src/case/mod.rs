@@ -42,8 +42,8 @@ use crate::diagnosis::search::known::{KnownEffects, KnownFit, known_fit};
 use crate::diagnosis::search::progress::Observer;
 use crate::diagnosis::settings::Settings;
 use crate::effects::own_effect;
-use crate::plant::flange::FittedFlange;
-use crate::plant::{Chain, Channel, LawText, OwnLaw, PlantParameters, simulate};
+use crate::flange::FittedFlange;
+use crate::plant::{Channel, DeviceParts, LawText, OwnLaw, PlantParameters, simulate};
 use crate::recording::csv::columns_text;
 use crate::recording::provenance::Provenance;
 use crate::replay::LoadedCell;
@@ -105,7 +105,7 @@ impl Case {
     /// A folder that holds none, or what is wrong with rig file or recordings.
     pub fn from_folder(folder: &Path) -> Result<Self, CaseError> {
         let rig = Box::new(rig_of(folder)?);
-        if rig.plant.chain == Chain::ContactFlange {
+        if rig.plant.parts == DeviceParts::ContactFlange {
             let (runs, unseen) = rig::flange_runs(&rig, folder)?;
             let unseen = unseen.map(Box::new);
             return Ok(Self::new(folder, Kind::Flange { rig, runs, unseen }));
@@ -122,7 +122,7 @@ impl Case {
     /// What is wrong with one of them, or a rig whose recordings are not fitted together.
     pub fn of_rig(rig: &RigFile, folder: &Path, names: &[String]) -> Result<Self, CaseError> {
         let mut rig = rig.clone();
-        if rig.plant.chain == Chain::ContactFlange {
+        if rig.plant.parts == DeviceParts::ContactFlange {
             return Err(CaseError::TriedOnFlange {
                 folder: folder.display().to_string(),
             });
@@ -140,7 +140,10 @@ impl Case {
     /// # Errors
     /// A recording that cannot be made fit.
     pub fn known_fit(&self, sets: &[KnownEffects]) -> Result<Option<KnownFit>, CaseError> {
-        let Some(input) = self.input().filter(|i| i.believed.chain == Chain::Whole) else {
+        let Some(input) = self
+            .input()
+            .filter(|i| i.believed.parts == DeviceParts::Whole)
+        else {
             return Ok(None);
         };
         let prepared = prepare(input)?;
@@ -469,7 +472,7 @@ fn prediction(
     }
     predicted.order();
     let shown = shown_columns(
-        plant.chain,
+        plant.parts,
         input.noise.map(f64::is_finite),
         &predicted.readings,
     );

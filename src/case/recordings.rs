@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::error::CaseError;
 use crate::diagnosis::recordings::recorded::COLUMNS;
-use crate::plant::{CHANNELS, Chain};
+use crate::plant::{CHANNELS, DeviceParts};
 use crate::recording::csv::{read_csv, read_csv_in_any_unit, read_readings};
 use crate::recording::samples::read_table;
 use crate::recording::{Recording, RecordingError};
@@ -13,14 +13,14 @@ use crate::recording::{Recording, RecordingError};
 ///
 /// # Errors
 /// Those of the file's form.
-pub fn read_rig(chain: Chain, path: &Path) -> Result<Recording, RecordingError> {
+pub fn read_rig(parts: DeviceParts, path: &Path) -> Result<Recording, RecordingError> {
     if path
         .extension()
         .is_some_and(|extension| extension == "parquet")
     {
         return read_table(path);
     }
-    let read = if chain == Chain::Whole {
+    let read = if parts == DeviceParts::Whole {
         read_csv(path)?
     } else {
         read_readings(path)?
@@ -29,10 +29,10 @@ pub fn read_rig(chain: Chain, path: &Path) -> Result<Recording, RecordingError> 
 }
 
 /// Reads a recording of a whole device whose measured columns may be in any unit; none where that does not help, or it is a table with units of its own.
-pub fn read_in_any_unit(chain: Chain, path: &Path) -> Option<Recording> {
+pub fn read_in_any_unit(parts: DeviceParts, path: &Path) -> Option<Recording> {
     let is_table = path.extension().is_some_and(|e| e == "parquet");
     let read = || read_csv_in_any_unit(path).ok();
-    (chain == Chain::Whole && !is_table)
+    (parts == DeviceParts::Whole && !is_table)
         .then(read)??
         .recording
         .into()
@@ -64,11 +64,11 @@ pub fn check_finite(
 
 /// The columns of a prediction: those of a whole device that it has sensors of, that of the output of a part.
 pub fn shown_columns(
-    chain: Chain,
+    parts: DeviceParts,
     sensors: [bool; CHANNELS.len()],
     predicted: &[Vec<f64>; CHANNELS.len()],
 ) -> Vec<(&'static str, &[f64])> {
-    let output = chain.output().map(|channel| channel as usize);
+    let output = parts.output().map(|channel| channel as usize);
     let columns = COLUMNS.into_iter().zip(predicted).enumerate();
     columns
         .filter(|(place, _)| output.map_or(sensors[*place], |output| output == *place))

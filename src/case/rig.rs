@@ -89,20 +89,20 @@ fn fits(written: &str, file: &str) -> bool {
 
 /// Inputs of a diagnosis.
 pub(super) fn input_of(rig: &RigFile, folder: &Path) -> Result<DiagnosisInput, CaseError> {
-    let chain = rig.plant.chain;
+    let parts = rig.plant.parts;
     // A column that is implausible as SI may be in another unit: the message stands unless that is found.
     let implausible = RefCell::new(None);
     let read = |name: &String| -> Result<NamedRecording, CaseError> {
         let path = folder.join(name);
         let file = path.display().to_string();
-        let recording = read_rig(chain, &path).or_else(|error| {
-            let Some(recording) = read_in_any_unit(chain, &path) else {
+        let recording = read_rig(parts, &path).or_else(|error| {
+            let Some(recording) = read_in_any_unit(parts, &path) else {
                 return Err(error);
             };
             implausible.borrow_mut().get_or_insert(error);
             Ok(recording)
         })?;
-        let recorded = recorded_of(chain, &file, &recording)?;
+        let recorded = recorded_of(parts, &file, &recording)?;
         let recorded = recorded.of_sensors(rig.sensors());
         Ok(NamedRecording {
             name: name.clone(),
@@ -117,7 +117,7 @@ pub(super) fn input_of(rig: &RigFile, folder: &Path) -> Result<DiagnosisInput, C
         believed,
         tolerated: tolerances
             .map(|t| tolerated(t.quantity, t.value, t.tolerance))
-            .chain(of_link(rig.plant.chain, rig.noise[0], rig.pressure_drift))
+            .chain(of_link(rig.plant.parts, rig.noise[0], rig.pressure_drift))
             .collect(),
         noise: rig.noise,
         recordings: to_fit(rig, folder)?
@@ -125,8 +125,8 @@ pub(super) fn input_of(rig: &RigFile, folder: &Path) -> Result<DiagnosisInput, C
             .map(read)
             .collect::<Result<_, _>>()?,
         unseen: rig.predict.as_ref().map(read).transpose()?,
-        candidates: (candidates(rig.plant.chain).into_iter())
-            .chain(numbers_off(rig.plant.chain))
+        candidates: (candidates(rig.plant.parts).into_iter())
+            .chain(numbers_off(rig.plant.parts))
             .chain(own)
             .collect(),
         shown: Vec::new(),
@@ -165,7 +165,7 @@ pub(super) fn flange_run(
 ) -> Result<MeasuredRun, CaseError> {
     let path = folder.join(name);
     let file = path.display().to_string();
-    let mut run = run_of(&file, name, &read_rig(rig.plant.chain, &path)?)?;
+    let mut run = run_of(&file, name, &read_rig(rig.plant.parts, &path)?)?;
     let ramp = (rig.force_ramps.iter()).find(|ramp| fits(&ramp.recording, name));
     run.force_ramp = ramp.map(|ramp| ForceRamp {
         before: ramp.before,

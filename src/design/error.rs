@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::keys::error::Place;
 use crate::scenario::ScenarioError;
-use crate::scenario::error::Place;
 
 /// A study that cannot be done.
 #[derive(Debug, thiserror::Error)]

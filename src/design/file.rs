@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use serde::Deserialize;
 
-use crate::scenario::keys::{Plain, keys};
-use crate::scenario::schema::of_file;
+use crate::keys::declaration::of_file;
+use crate::keys::declaration::{Plain, keys};
 
 /// Version of the format.
 pub(super) const SCHEMA: u32 = 1;

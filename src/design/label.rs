@@ -1,7 +1,7 @@
 //! Names and units for people, from keys that end in their unit.
 
+use crate::keys::units::{Unit, stem};
 use crate::quantity::significant;
-use crate::scenario::units::{Unit, stem};
 
 /// Suffixes of metrics that no file key has.
 const OTHERS: [(&str, &str); 3] = [("_percent", "%"), ("_nl", "Nl"), ("_g", "g")];

@@ -3,10 +3,10 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use crate::keys::check::Section;
+use crate::keys::document::{Document, read_text};
+use crate::keys::error::Place;
 use crate::scenario::ScenarioError;
-use crate::scenario::check::Section;
-use crate::scenario::document::{Document, read_text};
-use crate::scenario::error::Place;
 
 use super::candidate::{Design, Outcome, scenario_key};
 use super::file::{BoundKeys, ObjectiveKeys, OverKeys, SCHEMA, StudyFile, VariableKeys};

@@ -3,7 +3,7 @@
 mod check;
 
 use super::catalogue::{STANDARD_CYLINDERS, standard_rod};
-use crate::scenario::error::Place;
+use crate::keys::error::Place;
 
 pub(super) use check::variable;
 

@@ -28,7 +28,7 @@ use super::search::ruled_out::{add_exchanged, ruled_out};
 use super::search::tried::Tried;
 use super::search::{RoughFit, Search};
 use super::settings::Settings;
-use crate::plant::{CHANNELS, Chain, Channel, PlantParameters, simulate};
+use crate::plant::{CHANNELS, Channel, DeviceParts, PlantParameters, simulate};
 
 /// The fit of the answer to all recordings but one, from where that to all is.
 const LEFT_OUT: Refit<'static> = Refit::FINEST.from(Start::Here).until(Limit::of(8));
@@ -81,11 +81,14 @@ pub fn diagnose(
         believed: case.believed.clone(),
         tolerated: case.tolerated.clone(),
         looked_at: case.candidates.len(),
-        ruled_out: match case.believed.chain.output() {
+        ruled_out: match case.believed.parts.output() {
             Some(channel) if !is_spent => ruled_out(&search, best, channel),
             _ => Vec::new(),
         },
-        detectable: match case.believed.chain == Chain::Whole && best.finds_nothing() && !is_spent {
+        detectable: match case.believed.parts == DeviceParts::Whole
+            && best.finds_nothing()
+            && !is_spent
+        {
             true => detectable(&search, best),
             false => Vec::new(),
         },
@@ -165,7 +168,7 @@ fn found(
     settings: &Settings,
     observer: &mut Observer<'_>,
 ) -> Found {
-    let remaining = (case.believed.chain.output())
+    let remaining = (case.believed.parts.output())
         .map(|channel| Remaining::of(&search_of(case, &evidence, settings), channel, observer))
         .filter(|(remaining, _)| !remaining.is_noise());
     let Some((mut remaining, mut seed)) = remaining else {
@@ -210,7 +213,7 @@ fn found(
 
 /// Experiments that would tell the best explanation from the next: those known are of a bench, what an arm can do is in its programs.
 fn experiments(case: &DiagnosisInput, evidence: &Evidence, ranked: &[Ranked]) -> Vec<Separation> {
-    let of_bench = case.believed.chain == Chain::Whole
+    let of_bench = case.believed.parts == DeviceParts::Whole
         && evidence.recordings.iter().all(|m| m.inputs.cell.is_none());
     match ranked {
         [best, rival, ..] if of_bench => {
@@ -259,8 +262,8 @@ pub(super) fn search_of<'a>(
     settings: &Settings,
 ) -> Search<'a> {
     // A single link is simulated in no time.
-    let (look, most_effects) = match case.believed.chain {
-        Chain::Whole => (3, settings.most_effects),
+    let (look, most_effects) = match case.believed.parts {
+        DeviceParts::Whole => (3, settings.most_effects),
         _ => (12, settings.most_effects_of_part),
     };
     Search {
@@ -296,8 +299,8 @@ fn baseline(search: &Search<'_>, best: &Hypothesis) -> Baseline {
     };
     let prediction = evidence.predict(&plant, false, None);
     // A single link has nothing to be cut from.
-    let links = match plant.chain {
-        Chain::Whole => links(evidence, &held, &search.tolerated),
+    let links = match plant.parts {
+        DeviceParts::Whole => links(evidence, &held, &search.tolerated),
         _ => Vec::new(),
     };
     let links = links.into_iter().map(|link| {

@@ -22,7 +22,7 @@ use super::fit::{Limit, ROUGH, Refit, Stage, fit, rough_noise};
 use super::recordings::evidence::{Evidence, Prediction};
 use super::settings::Settings;
 use crate::effects::Effect;
-use crate::plant::{Chain, PlantInputs, PlantParameters};
+use crate::plant::{DeviceParts, PlantInputs, PlantParameters};
 use rayon::prelude::*;
 
 /// Everything a search needs.
@@ -284,7 +284,7 @@ impl Search<'_> {
     /// a part of the device that is the noise already.
     fn weighed(&self, full: &mut Vec<Hypothesis>, observer: &mut Observer<'_>) -> Self {
         let mut weighed = self.clone();
-        if self.believed.chain != Chain::Whole {
+        if self.believed.parts != DeviceParts::Whole {
             return weighed;
         }
         for round in 0..self.settings.rounds {

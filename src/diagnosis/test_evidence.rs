@@ -9,8 +9,8 @@ use super::settings::Settings;
 use crate::device::DeviceParameters;
 use crate::effects::Coordinate;
 use crate::plant::{
-    CellParameters, Chain, ContactLaw, ContactParameters, InitialState, LinkParameters, Periodic,
-    PlantInputs, PlantParameters, SensorErrors, registry, simulate,
+    CellParameters, ContactLaw, ContactParameters, DeviceParts, InitialState, LinkParameters,
+    Periodic, PlantInputs, PlantParameters, SensorErrors, registry, simulate,
 };
 use nalgebra::DMatrix;
 
@@ -30,7 +30,7 @@ pub(super) fn plant() -> PlantParameters {
         sensors: SensorErrors::NONE,
         latent: None,
         own: Vec::new(),
-        chain: Chain::Whole,
+        parts: DeviceParts::Whole,
         links: LinkParameters::NONE,
         cell: CellParameters::RIGID,
     }

@@ -3,8 +3,8 @@
 use glam::{DQuat, DVec3};
 use glamx::DPose3;
 
-use crate::recording::colour::Colour;
-use crate::recording::scene::{Scene, SceneGeometry, ScenePoses, SceneShape};
+use crate::scene::colour::Colour;
+use crate::scene::{Scene, SceneGeometry, ScenePoses, SceneShape};
 
 /// Sides of a drawn cylinder, and of a sphere about its axis.
 const SIDES: usize = 32;

@@ -19,8 +19,8 @@ use self::faces::{Face, faces};
 use self::raster::{Camera, Raster};
 use self::svg::Svg;
 use crate::quantity::with_unit;
-use crate::recording::error_scale::ErrorScale;
-use crate::recording::scene::{ContactArrow, EdgePath, Scene};
+use crate::scene::error_scale::ErrorScale;
+use crate::scene::{ContactArrow, EdgePath, Scene};
 
 pub use self::numbered::{Numbered, numbered};
 pub use self::solids::Solid;

@@ -5,7 +5,7 @@ use glam::{DVec2, DVec3};
 use super::faces::faces;
 use super::raster::{Camera, Raster};
 use super::{HIDDEN, SIZE, Svg, drawn, scale_bar};
-use crate::recording::scene::Scene;
+use crate::scene::Scene;
 
 /// Room that a number takes [pixel].
 const NUMBER: DVec2 = DVec2::new(26.0, 18.0);

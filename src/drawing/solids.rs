@@ -6,8 +6,8 @@ use glam::DVec3;
 
 use super::faces::{Face, faces};
 use super::simplify::{Bodies, simplify};
-use crate::recording::colour::Colour;
-use crate::recording::scene::Scene;
+use crate::scene::Scene;
+use crate::scene::colour::Colour;
 
 /// Corners within this are one, as fine as the page's numbers [m].
 const ONE: f64 = 1e-8;
@@ -128,7 +128,7 @@ mod tests {
     use glamx::DPose3;
 
     use super::*;
-    use crate::recording::scene::{SceneBody, SceneGeometry, ScenePoses, SceneShape};
+    use crate::scene::{SceneBody, SceneGeometry, ScenePoses, SceneShape};
 
     fn ball(radius: f64) -> Scene {
         Scene {

@@ -3,7 +3,7 @@
 use glamx::DPose3;
 
 use super::*;
-use crate::recording::scene::{ContactArrow, SceneBody, SceneGeometry, ScenePoses, SceneShape};
+use crate::scene::{ContactArrow, SceneBody, SceneGeometry, ScenePoses, SceneShape};
 
 /// A plate of 200 x 100 x 10 mm with an edge along its upper front side, two frames, 50 N downwards in the second.
 fn plate() -> Scene {

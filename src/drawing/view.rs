@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::recording::scene::Scene;
+use crate::scene::Scene;
 
 /// Steps of the directions that are tried [degrees].
 const AZIMUTH_STEP: usize = 15;

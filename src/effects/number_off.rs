@@ -15,7 +15,7 @@
 
 use super::parts::*;
 use crate::effects::effect::Which;
-use crate::plant::Chain;
+use crate::plant::DeviceParts;
 use crate::plant::registry::Number;
 
 /// A number that may be off, where it enters, and the shares of the sheet's value from which a fit starts.
@@ -117,13 +117,13 @@ pub static NUMBERS_OFF: [Effect; 10] = [
 
 /// Those that can show in a rig with so much of the device.
 #[must_use]
-pub fn numbers_off(chain: Chain) -> &'static [Effect] {
-    match chain {
-        Chain::Whole => &NUMBERS_OFF,
+pub fn numbers_off(parts: DeviceParts) -> &'static [Effect] {
+    match parts {
+        DeviceParts::Whole => &NUMBERS_OFF,
         // Its area alone acts.
-        Chain::MovedPiston => &NUMBERS_OFF[..1],
-        Chain::Regulator => &NUMBERS_OFF[3..4],
-        Chain::DrivenSlide | Chain::ClosedChamber | Chain::ContactFlange => &[],
+        DeviceParts::MovedPiston => &NUMBERS_OFF[..1],
+        DeviceParts::Regulator => &NUMBERS_OFF[3..4],
+        DeviceParts::DrivenSlide | DeviceParts::ClosedChamber | DeviceParts::ContactFlange => &[],
     }
 }
 

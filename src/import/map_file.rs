@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::map::{Clock, FileMap, Form, ImportMap, Missing, RowChoice};
+use crate::keys::check::Section;
+use crate::keys::document::{Document, read_text};
 use crate::scenario::ScenarioError;
-use crate::scenario::check::Section;
-use crate::scenario::document::{Document, read_text};
 
 mod channels;
 mod keys;
@@ -302,7 +302,7 @@ fn check_together(document: &Document<'_>, map: &ImportMap) -> Result<(), Scenar
 mod tests {
     use super::super::units;
     use super::*;
-    use crate::scenario::keys::tables;
+    use crate::keys::declaration::tables;
 
     const PAGE: &str = include_str!("../../assets/import/README.md");
 

@@ -11,11 +11,9 @@
 
 mod arm_trajectory;
 mod cell_parameters;
-mod chain;
 mod contact;
 mod contact_friction;
 mod cubic;
-pub mod flange;
 mod hold;
 mod initial_state;
 mod inputs;
@@ -28,6 +26,7 @@ mod nudging;
 mod observation;
 mod own_law;
 mod parameters;
+mod parts;
 mod port;
 pub mod registry;
 mod riding;
@@ -44,7 +43,6 @@ pub use arm_trajectory::{
     ArmTrajectory, ContactJacobian, ContactKinematics, INERTIA_EVERY, JointTrajectory,
 };
 pub use cell_parameters::{Burr, CellParameters, MOST_JOINTS, Relief};
-pub use chain::{Chain, LinkParameters};
 pub use contact::{ContactLaw, ContactParameters, PHASES, Periodic};
 pub use cubic::Cubic;
 pub use initial_state::{HeldMotion, InitialState};
@@ -60,6 +58,7 @@ pub use own_law::{
     SYMBOLS, Symbol, USUAL_BRISTLE_STIFFNESS, Unit, kept_name,
 };
 pub use parameters::PlantParameters;
+pub use parts::{DeviceParts, LinkParameters};
 pub use port::Port;
 pub use registry::{Number, Quantity};
 pub use running_device::RunningDevice;

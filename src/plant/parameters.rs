@@ -1,10 +1,10 @@
 //! Constant parameters of a rig while it is recorded.
 
 use super::cell_parameters::CellParameters;
-use super::chain::{Chain, LinkParameters};
 use super::contact::ContactParameters;
 use super::latent::Latent;
 use super::own_law::OwnLaw;
+use super::parts::{DeviceParts, LinkParameters};
 use super::sensors::SensorErrors;
 use crate::device::DeviceParameters;
 
@@ -12,7 +12,7 @@ use crate::device::DeviceParameters;
 #[derive(Debug, Clone, PartialEq)]
 pub struct PlantParameters {
     /// The share of the device that there is.
-    pub chain: Chain,
+    pub parts: DeviceParts,
     /// Further properties of its single links.
     pub links: LinkParameters,
     /// The device.
@@ -39,7 +39,7 @@ impl PlantParameters {
         cell: CellParameters,
     ) -> Self {
         Self {
-            chain: Chain::Whole,
+            parts: DeviceParts::Whole,
             links: LinkParameters::NONE,
             device,
             // The arm says it, moment by moment.
@@ -54,7 +54,7 @@ impl PlantParameters {
 
     /// Whether the rig moves as another one does where there is no workpiece.
     pub fn moves_freely_as(&self, other: &Self) -> bool {
-        self.chain == other.chain
+        self.parts == other.parts
             && self.links == other.links
             && self.device == other.device
             && self.gravity_along_extension == other.gravity_along_extension

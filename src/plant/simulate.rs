@@ -1,7 +1,6 @@
 //! A rig run on the inputs of a recording.
 
 use super::arm_trajectory::ContactKinematics;
-use super::chain;
 use super::contact::ContactParameters;
 use super::contact_friction::{AxialFriction, ContactFriction};
 use super::cubic::Cubic;
@@ -13,6 +12,7 @@ use super::load::{PistonLoad, Touch};
 use super::moment::Moment;
 use super::nudging::Nudging;
 use super::parameters::PlantParameters;
+use super::parts;
 use super::port::Port;
 use super::riding::Riding;
 use super::running_device::RunningDevice;
@@ -91,7 +91,7 @@ pub fn true_trajectory(
     inputs: &PlantInputs,
     nudging: Option<&Nudging>,
 ) -> Trajectory {
-    if let Some(truth) = chain::true_trajectory(plant, inputs) {
+    if let Some(truth) = parts::true_trajectory(plant, inputs) {
         return truth;
     }
     let device = Device::new(plant.with_friction_of_terms(plant.device.clone()));

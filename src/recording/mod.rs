@@ -1,26 +1,19 @@
 //! Recordings: sampled signals of one run of the cell, simulated or real.
 //!
 //! A [`Recording`] is sample times, named channels in SI units and the phases of the job. It knows
-//! nothing of how it came about. [`parquet`] stores it as a table, [`csv`] reads that of a real rig, [`table`] any other's columns, [`rerun`] draws it together with
-//! a [`scene::Scene`], and [`schema`] lists the signals that the simulated cell writes.
+//! nothing of how it came about. [`parquet`] stores it as a table, [`csv`] reads that of a real rig, [`table`] any other's columns, and [`schema`] lists
+//! the signals that the simulated cell writes.
 
 pub mod atomic;
-pub mod board;
-pub mod colour;
 pub mod csv;
 mod error;
-pub mod error_scale;
-pub mod finished_edge;
 pub mod gaps;
 #[cfg(feature = "parquet")]
 pub mod long_table;
 #[cfg(feature = "parquet")]
 pub mod parquet;
 pub mod provenance;
-#[cfg(feature = "viewer")]
-pub mod rerun;
 pub mod samples;
-pub mod scene;
 pub mod schema;
 #[cfg(feature = "parquet")]
 pub mod table;

@@ -4,12 +4,12 @@ use std::path::Path;
 
 use super::bench::{self, BenchScenario};
 use super::cell::Scenario;
-use super::document::{Document, place_of_key, read_text};
-use super::error::{Place, ScenarioError};
 use super::file::{Kind, KindOnly, SCHEMA};
 use super::load::from_document;
 use super::sections::{bench_sections, scenario_sections};
-use super::suggestion::Sections;
+use crate::keys::document::{Document, place_of_key, read_text};
+use crate::keys::error::{Place, ScenarioError};
+use crate::keys::suggestion::Sections;
 
 /// A scenario of either kind.
 #[derive(Debug, Clone)]

@@ -8,8 +8,8 @@ use super::controller::ControllerKeys;
 use super::effects::EffectKeys;
 use super::estimator::EstimatorKeys;
 use super::file::{BoundKeys, DeviceKeys, Kind};
-use super::keys::{Plain, keys};
 use super::sensing::keys::SensingKeys;
+use crate::keys::declaration::{Plain, keys};
 use crate::physics::valve::ValvePosition;
 use crate::plant::registry;
 

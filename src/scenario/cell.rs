@@ -8,11 +8,11 @@ use serde::Deserialize;
 
 use super::controller::ControllerScenario;
 use super::judged::JudgedValue;
-use super::keys::{Below, Filled, keys};
-use super::schema::plain::type_schema;
-use super::units::Unit;
 use crate::device::DeviceParameters;
 use crate::effects::PresentEffect;
+use crate::keys::declaration::{Below, Filled, keys};
+use crate::keys::schema::type_schema;
+use crate::keys::units::Unit;
 use crate::physics::cutting_force::CuttingForce;
 use crate::physics::removal_law::RemovalLaw;
 use crate::physics::spindle::Spindle;

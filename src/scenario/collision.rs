@@ -1,10 +1,10 @@
 //! `[collision]` and `[[obstacle]]` of a scenario file.
 
-use super::check::{Section, pose};
-use super::document::Document;
-use super::error::ScenarioError;
 use super::file::{CollisionKeys, ObstacleKeys};
 use super::{CollisionScenario, Obstacle, ObstacleShape};
+use crate::keys::check::{Section, pose};
+use crate::keys::document::Document;
+use crate::keys::error::ScenarioError;
 
 /// What must not meet.
 pub(super) fn collision(

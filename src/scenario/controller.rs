@@ -5,12 +5,12 @@
 
 use serde::Deserialize;
 
-use super::check::Section;
-use super::document::Document;
-use super::error::{Place, ScenarioError};
-use super::keys::{Plain, keys};
-use super::suggestion::join;
 use crate::device::{DeviceParameters, PressureMap};
+use crate::keys::check::Section;
+use crate::keys::declaration::{Plain, keys};
+use crate::keys::document::Document;
+use crate::keys::error::{Place, ScenarioError};
+use crate::keys::suggestion::join;
 use crate::physics::seal_friction::SealFriction;
 use crate::plant::registry;
 use crate::sensing::{CommandChain, SensingParameters};

@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use super::DeviceScenario;
-use super::check::Section;
-use super::document::{Document, read_text};
-use super::error::ScenarioError;
 use super::file::{ModelFile, SCHEMA};
 use super::judged;
-use super::keys::Table;
 use super::rig_file::blank;
-use super::units::Unit;
+use crate::keys::check::Section;
+use crate::keys::declaration::Table;
+use crate::keys::document::{Document, read_text};
+use crate::keys::error::ScenarioError;
+use crate::keys::units::Unit;
 use crate::plant::{Number, registry};
 
 mod keys;

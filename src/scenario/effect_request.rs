@@ -1,9 +1,9 @@
 //! An effect asked for by name, as `--with` does: from its name and some of its numbers, in any unit of theirs, to the keys of a scenario file.
 
-use super::suggestion::nearest;
-use super::units::Unit;
 use super::variation::KeyValue;
 use crate::effects::{Effect, every};
+use crate::keys::suggestion::nearest;
+use crate::keys::units::Unit;
 use crate::plant::PlantParameters;
 
 /// Key of the joint that an effect is about.

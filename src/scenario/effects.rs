@@ -22,12 +22,12 @@ mod tried;
 mod value;
 mod written;
 
-use super::check::{Section, checked};
-use super::document::Document;
-use super::error::ScenarioError;
-use super::suggestion::{join, nearest};
-use super::units::Unit;
 use crate::effects::{Effect, Parameter, PresentEffect};
+use crate::keys::check::{Section, checked};
+use crate::keys::document::Document;
+use crate::keys::error::ScenarioError;
+use crate::keys::suggestion::{join, nearest};
+use crate::keys::units::Unit;
 use crate::plant::PlantParameters;
 use keys::{JOINT, KeyTable, LISTED, NAME};
 

@@ -2,13 +2,13 @@
 
 use serde::Deserialize;
 
-use super::check::Section;
-use super::document::Document;
-use super::error::ScenarioError;
-use super::keys::{Plain, keys};
 use super::sensing::white;
 use crate::device::DeviceParameters;
 use crate::estimation::{ContactForceEstimator, EstimatorParameters, SensorNoise, Tolerances};
+use crate::keys::check::Section;
+use crate::keys::declaration::{Plain, keys};
+use crate::keys::document::Document;
+use crate::keys::error::ScenarioError;
 use crate::plant::registry;
 use crate::sensing::{Measurement, SensingParameters};
 

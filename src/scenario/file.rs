@@ -15,8 +15,8 @@ use super::cell::{
 use super::controller::ControllerKeys;
 use super::device::ModelKeys;
 use super::effects::EffectKeys;
-use super::keys::{Plain, keys};
 use super::sensing::keys::SensingKeys;
+use crate::keys::declaration::{Plain, keys};
 
 /// Thickness of a burr's root where the file says nothing [m].
 pub(super) const USUAL_ROOT: f64 = 0.15e-3;

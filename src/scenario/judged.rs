@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::document::Document;
-use super::keys::Key;
-use super::suggestion::join;
+use crate::keys::declaration::Key;
+use crate::keys::document::Document;
+use crate::keys::suggestion::join;
 
 /// What the values of a device decide.
 const OF_DEVICE: &str = "contact force and stroke";
@@ -68,8 +68,8 @@ mod tests {
     use std::path::Path;
 
     use super::super::file::ScenarioFile;
-    use super::super::keys::tables;
     use super::*;
+    use crate::keys::declaration::tables;
 
     #[test]
     fn a_models_judged_values_count_where_something_is_on() {

@@ -5,16 +5,12 @@ use std::path::Path;
 
 use glam::DVec3;
 
-use super::check::{Section, pose};
 use super::collision::collision;
 use super::controller::{ForceLaw, controller};
 use super::device::load_with_overrides;
-use super::document::{Document, read_text};
 use super::effects::{EffectKeys, effects};
-use super::error::ScenarioError;
 use super::file::{self, ScenarioFile};
 use super::judged;
-use super::keys::tables;
 use super::sensing::sensing;
 use super::tool;
 use super::workpiece::workpiece;
@@ -23,6 +19,10 @@ use super::{
     PassScenario, ProcessScenario, RemovalScenario, Scenario,
 };
 use crate::effects::{Effect, PresentEffect, every};
+use crate::keys::check::{Section, pose};
+use crate::keys::declaration::tables;
+use crate::keys::document::{Document, read_text};
+use crate::keys::error::ScenarioError;
 use crate::plant::{CellParameters, PlantParameters, registry};
 
 /// Reads the scenario of a cell from a document that does not say otherwise.

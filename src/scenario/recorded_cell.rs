@@ -7,11 +7,7 @@ use std::path::{Path, PathBuf};
 use glam::DVec3;
 
 use super::any;
-use super::check::Section;
-use super::document::{Document, read_text};
-use super::error::ScenarioError;
 use super::file::{self, Kind, KindOnly};
-use super::keys::{names, tables};
 use super::load;
 use super::sensing::white;
 use super::workpiece::workpiece;
@@ -20,6 +16,10 @@ use super::{
     WorkpieceScenario,
 };
 use crate::effects::PresentEffect;
+use crate::keys::check::Section;
+use crate::keys::declaration::{names, tables};
+use crate::keys::document::{Document, read_text};
+use crate::keys::error::ScenarioError;
 use crate::plant::{Observation, registry};
 use crate::sensing::{FilterParameters, Measurement};
 

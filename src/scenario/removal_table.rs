@@ -7,11 +7,11 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use super::check::Section;
-use super::document::{Document, read_text};
-use super::error::ScenarioError;
-use super::keys::{Plain, keys};
-use super::schema::of_file;
+use crate::keys::check::Section;
+use crate::keys::declaration::of_file;
+use crate::keys::declaration::{Plain, keys};
+use crate::keys::document::{Document, read_text};
+use crate::keys::error::ScenarioError;
 
 /// Version of the format.
 const SCHEMA: u32 = 1;

@@ -1,11 +1,11 @@
 //! The device of a bench: a device model file, or a rig file with its contact and its sensors' errors.
 
 use super::DeviceScenario;
-use super::check::Section;
-use super::error::ScenarioError;
 use super::file::DeviceKeys;
 use super::load::{device, is_rig};
 use super::rig_file::load_rig;
+use crate::keys::check::Section;
+use crate::keys::error::ScenarioError;
 use crate::plant::{ContactParameters, Latent, OwnLaw, PlantParameters, SensorErrors, registry};
 
 /// Parts of a device on a bench.

@@ -14,12 +14,12 @@
 
 use std::path::{Path, PathBuf};
 
-use super::document::{Document, read_text};
 use super::effects::effects;
-use super::error::ScenarioError;
 use crate::effects::{PresentEffect, candidates};
+use crate::flange::FittedFlange;
+use crate::keys::document::{Document, read_text};
+use crate::keys::error::ScenarioError;
 use crate::plant::PlantParameters;
-use crate::plant::flange::FittedFlange;
 use keys::{RigKeys, sections};
 use values::{check_together, pressure_drift, recordings, sensors, shares};
 
@@ -38,7 +38,6 @@ mod values;
 pub use improved::{Improved, improved_text};
 pub(super) use keys::{PartKeys, RecordingsKeys, SharesKeys};
 pub use known::{FREQUENCY_NAME, Known, coefficient_name, of_term};
-pub(super) use number::NUMBER_OR_TABLE;
 pub(super) use quantities::{blank, described_numbers};
 pub use values::{RecordingForceRamp, Shares, Tolerance};
 
@@ -106,18 +105,18 @@ pub fn from_text(path: &Path, text: &str) -> Result<RigFile, ScenarioError> {
     let mut plant = quantities::blank();
     let tolerances = values::base(&document, &keys, &mut plant)?;
     check_together(&document, &plant)?;
-    let effects = effects(&document, &keys.effect, &candidates(plant.chain), &plant)?;
+    let effects = effects(&document, &keys.effect, &candidates(plant.parts), &plant)?;
     let bare = plant.clone();
     for effect in &effects {
         effect.put_into(&mut plant);
     }
     plant.latent = latent::latent(&document, keys.latent.as_ref())?;
     let known = known::known(&document, keys.known.take(), &plant, &effects)?;
-    let flange = flange::flange(&document, keys.flange.as_ref(), plant.chain)?;
-    let (rate, noise) = sensors(&document, &keys, plant.chain)?;
+    let flange = flange::flange(&document, keys.flange.as_ref(), plant.parts)?;
+    let (rate, noise) = sensors(&document, &keys, plant.parts)?;
     let pressure_drift = pressure_drift(&document, &keys)?;
     let shares = shares(&document, keys.shares)?;
-    let recordings = recordings(&document, keys.recordings, plant.chain)?;
+    let recordings = recordings(&document, keys.recordings, plant.parts)?;
     Ok(RigFile {
         path: path.to_owned(),
         text: text.to_owned(),

@@ -1,18 +1,16 @@
 //! JSON Schemas of the files, for editors, made of the keys as they are declared.
 
-pub(super) mod plain;
 mod rig;
 
 use serde_json::{Value, json};
 
 pub use rig::schema as rig;
 
-use plain::DIALECT;
-
 use super::bench_file::BenchFile;
 use super::file::{ModelFile, ScenarioFile};
-use super::keys::{Filled, Table};
 use super::recorded_cell::RecordedCellFile;
+use crate::keys::declaration::{Filled, of_file};
+use crate::keys::schema::DIALECT;
 
 /// Schema of a scenario file of any kind.
 #[must_use]
@@ -33,12 +31,4 @@ pub fn scenario() -> Value {
 #[must_use]
 pub fn device() -> Value {
     of_file::<ModelFile>("A device model file of idc")
-}
-
-/// Schema of a kind of file by itself.
-pub(crate) fn of_file<T: Table>(title: &str) -> Value {
-    let mut schema = T::schema();
-    schema["$schema"] = DIALECT.into();
-    schema["title"] = title.into();
-    schema
 }

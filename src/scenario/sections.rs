@@ -5,7 +5,7 @@ use serde::de::{Deserializer, Error, Visitor};
 
 use super::bench_file::BenchFile;
 use super::file::ScenarioFile;
-use super::keys::{names, tables};
+use crate::keys::declaration::{names, tables};
 
 /// Tables of a scenario file with their keys; `*` stands for a name that the user gives.
 pub(crate) fn scenario_sections() -> Vec<(String, Vec<&'static str>)> {

@@ -3,9 +3,9 @@
 //! The preset says of which kind each stage is that does not say so itself, and how often samples are taken. What a stage leaves out
 //! does not depend on the preset: it is the source paper's for a real stage (`crate::sensing::parameters`), `WHITE` for a white one.
 
-use super::check::Section;
-use super::document::Document;
-use super::error::ScenarioError;
+use crate::keys::check::Section;
+use crate::keys::document::Document;
+use crate::keys::error::ScenarioError;
 use crate::sensing::{
     AdcParameters, CommandChain, FilterParameters, Measurement, SensingParameters,
 };

@@ -1,9 +1,9 @@
 //! `[tool]` and `[removal]` of a scenario file.
 
-use super::check::Section;
-use super::error::ScenarioError;
 use super::file::{RemovalKeys, RemovalWord, SpindleSense, SpindleStart, ToolKeys, ToolShapeWord};
 use super::{RemovalScenario, ToolScenario};
+use crate::keys::check::Section;
+use crate::keys::error::ScenarioError;
 use crate::physics::cutting_force::CuttingForce;
 use crate::physics::removal_law::RemovalLaw;
 use crate::physics::spindle::Spindle;

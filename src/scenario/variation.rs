@@ -8,10 +8,10 @@ use toml_edit::{DocumentMut, TomlError, Value};
 
 use super::AnyScenario;
 use super::any::from_text;
-use super::document::read_text;
-use super::error::{Place, ScenarioError};
 use super::sections::{bench_sections, scenario_sections};
-use super::suggestion::nearest_dotted;
+use crate::keys::document::read_text;
+use crate::keys::error::{Place, ScenarioError};
+use crate::keys::suggestion::nearest_dotted;
 
 pub use edit::{KeyValue, listed};
 

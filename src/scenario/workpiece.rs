@@ -1,9 +1,9 @@
 //! The workpiece's part of a scenario file.
 
-use super::check::{Section, pose};
-use super::error::ScenarioError;
 use super::file::{self, BurrKeys, BurrKind, USUAL_ROOT};
 use super::{BurrScenario, ChamferScenario, EdgeChoice, EdgeSelection, WorkpieceScenario};
+use crate::keys::check::{Section, pose};
+use crate::keys::error::ScenarioError;
 
 /// `[workpiece]` and the tables in it.
 pub(super) fn workpiece(

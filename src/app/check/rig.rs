@@ -7,7 +7,7 @@ use super::report::{Report, shown};
 use crate::case::{Case, CaseError, read_in_any_unit, read_rig, rig_of, to_fit};
 use crate::diagnosis::recordings::input::{DiagnosisInput, prepare};
 use crate::diagnosis::recordings::recorded::{COLUMNS, recorded_of};
-use crate::plant::{Chain, InitialState};
+use crate::plant::{DeviceParts, InitialState};
 use crate::recording::thousandfold::thousandfold;
 use crate::scenario::rig_file::{RigFile, load_rig};
 use crate::shell::word;
@@ -84,12 +84,12 @@ fn conditions(report: &mut Report, input: &DiagnosisInput) -> Result<(), AppErro
 
 fn describe(report: &mut Report, rig: &RigFile) {
     let plant = &rig.plant;
-    if plant.chain == Chain::Whole {
+    if plant.parts == DeviceParts::Whole {
         report.device(&plant.device);
     } else {
         report.fact(
             "part",
-            format!("{} alone ([rig] chain)", plant.chain.name()),
+            format!("{} alone ([rig] chain)", plant.parts.name()),
         );
     }
     let tolerances: Vec<String> = (rig.tolerances.iter())
@@ -105,7 +105,7 @@ fn describe(report: &mut Report, rig: &RigFile) {
         let variable = latent.variable.name();
         report.fact("latent", format!("a term without a name over {variable}"));
     }
-    if plant.chain == Chain::Whole {
+    if plant.parts == DeviceParts::Whole {
         report.fact("rate", format!("{} Hz", shown(rig.rate)));
         report.number("rate_hz", rig.rate);
         let absent = COLUMNS
@@ -132,15 +132,15 @@ fn recording(
     what: &str,
 ) -> Result<(), AppError> {
     let path = folder.join(name);
-    let chain = rig.plant.chain;
+    let parts = rig.plant.parts;
     // The case was read: a column in another unit is one of its faults.
-    let read = read_rig(chain, &path).or_else(|e| read_in_any_unit(chain, &path).ok_or(e))?;
+    let read = read_rig(parts, &path).or_else(|e| read_in_any_unit(parts, &path).ok_or(e))?;
     let time = read.time();
     let span = time.last().unwrap_or(&0.0) - time.first().unwrap_or(&0.0);
     let mut measured = String::new();
-    if rig.plant.chain != Chain::ContactFlange {
+    if rig.plant.parts != DeviceParts::ContactFlange {
         let file = path.display().to_string();
-        let taken = recorded_of(rig.plant.chain, &file, &read)?.of_sensors(rig.sensors());
+        let taken = recorded_of(rig.plant.parts, &file, &read)?.of_sensors(rig.sensors());
         let there = |channel: &usize| taken.readings[*channel].iter().any(|v| v.is_finite());
         let columns: Vec<&str> = (0..COLUMNS.len())
             .filter(there)
@@ -153,7 +153,7 @@ fn recording(
     }
     let samples = read.sample_count();
     let step = median_step(time);
-    if rig.plant.chain == Chain::Whole && step > 0.0 {
+    if rig.plant.parts == DeviceParts::Whole && step > 0.0 {
         let rate = 1.0 / step;
         if (rate / rig.rate - 1.0).abs() > OTHER_RATE {
             report.note(format!(

@@ -11,10 +11,8 @@ use crate::diagnosis::formula::unlisted::report::{ShapeRow, UnlistedReport};
 use crate::diagnosis::recordings::recorded::COLUMNS;
 use crate::page::kept;
 use crate::plant::CHANNELS;
-use crate::recording::board::{
-    Board, BoardLine, BoardRole, Cloud, CloudGroup, Lane, Sheet, SheetPlot,
-};
-use crate::recording::scene::Scene;
+use crate::scene::Scene;
+use crate::scene::board::{Board, BoardLine, BoardRole, Cloud, CloudGroup, Lane, Sheet, SheetPlot};
 use crate::stats::{NORMAL_95, quantile};
 
 /// Recordings that are drawn at most; tabs beyond would not fit the screen.

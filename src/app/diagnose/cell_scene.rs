@@ -19,11 +19,11 @@ use crate::cell::{CellError, arm_options};
 use crate::diagnosis::difference::comparison::Compared;
 use crate::diagnosis::joints::servo::Axes;
 use crate::plant::{ArmTrajectory, Channel, PlantParameters, follow};
-use crate::recording::colour::Colour;
-use crate::recording::scene::{
+use crate::replay::LoadedCell;
+use crate::scene::colour::Colour;
+use crate::scene::{
     ContactArrow, EdgePath, Scene, SceneBody, SceneGeometry, ScenePoses, SceneShape,
 };
-use crate::replay::LoadedCell;
 use crate::workpiece::load_mesh;
 
 /// Time between two frames [s].

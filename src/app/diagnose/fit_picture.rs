@@ -10,7 +10,7 @@ const MOST: usize = 4;
 
 /// The picture, if a part of the device was diagnosed.
 pub(super) fn picture(diagnosis: &Diagnosis) -> Result<Option<String>, AppError> {
-    let Some(channel) = diagnosis.believed.chain.output() else {
+    let Some(channel) = diagnosis.believed.parts.output() else {
         return Ok(None);
     };
     let index = channel as usize;

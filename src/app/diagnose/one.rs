@@ -19,9 +19,9 @@ use crate::diagnosis::effort::EffortLimit;
 use crate::diagnosis::search::progress::Observer;
 use crate::diagnosis::settings::Settings;
 use crate::plant::LawText;
-use crate::recording::scene::Scene;
 use crate::replay::LoadedCell;
 use crate::scenario::removal_table::is_removal_table;
+use crate::scene::Scene;
 use crate::shell::word;
 
 /// What can be diagnosed.

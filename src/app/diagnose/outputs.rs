@@ -11,8 +11,8 @@ use crate::case::IMPROVED;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::difference::comparison::Comparison;
 use crate::recording::atomic::write_text;
-use crate::recording::rerun::write_board;
-use crate::recording::scene::Scene;
+use crate::scene::Scene;
+use crate::viewer::write_board;
 
 const ACCOUNT: &str = "account.txt";
 const PREDICTION: &str = "prediction.csv";

@@ -12,7 +12,7 @@ use crate::diagnosis::answer::shared::{
 use crate::diagnosis::answer::statements::TRUSTED;
 use crate::diagnosis::answer::words::{capital, listed, percent, wrapped};
 use crate::effects::{Effect, candidates, numbers_off};
-use crate::plant::Chain;
+use crate::plant::DeviceParts;
 use crate::quantity::{DIGITS, significant, with_unit};
 use crate::scenario::rig_file::RigFile;
 use crate::stats::NORMAL_95;
@@ -113,8 +113,8 @@ struct Law {
 impl Law {
     /// Those of a family that a diagnosis of a rig looks at.
     fn of(rig: &RigFile, family: &str) -> Vec<Self> {
-        let chain = rig.plant.chain;
-        let all = candidates(chain).into_iter().chain(numbers_off(chain));
+        let parts = rig.plant.parts;
+        let all = candidates(parts).into_iter().chain(numbers_off(parts));
         let laws = all.filter_map(|effect| {
             let scaling = scaling(effect.vocabulary().0, effect.number_key())?;
             (scaling.family == family).then_some(Self { effect, scaling })
@@ -250,7 +250,7 @@ impl<'a> Together<'a> {
         };
         let probability = match own {
             // Where a piston is moved, force by pressure is all that is seen: whichever was fitted, the others do as well.
-            _ if case.rig.plant.chain == Chain::MovedPiston => 1.0,
+            _ if case.rig.plant.parts == DeviceParts::MovedPiston => 1.0,
             Some(member) if of_answer(member) => likeliest,
             Some(member) => member.probability,
             None => left,

@@ -7,7 +7,7 @@ use glamx::DPose3;
 
 use super::super::picture::PART;
 use super::super::space::MILLIMETRES;
-use crate::recording::scene::{Scene, SceneBody, SceneGeometry, ScenePoses, SceneShape};
+use crate::scene::{Scene, SceneBody, SceneGeometry, ScenePoses, SceneShape};
 use crate::workpiece::{Convexity, CurveKind, EdgeCurve};
 
 /// Triangles of the part at most: about 2 MB of a page of less than 3 MB.

@@ -139,7 +139,7 @@ impl Explained {
         lines.extend(of_joint.then(|| format!("joint = {}", stage.telling)));
         lines.extend(numbers.iter().map(|n| format!("{} = {}", n.key, n.shown)));
         let (chain, command) = match scene::of(effect).scene {
-            Scene::Part(chain) => (Some(chain.name()), None),
+            Scene::Part(parts) => (Some(parts.name()), None),
             Scene::Run(run) => {
                 let out = format!("runs/{name}");
                 let asked = scene::asked(effect);

@@ -8,7 +8,7 @@ use super::super::run::put_in;
 use crate::cell::Cell;
 use crate::effects::{Effect, LINK_EFFECTS, Subsystem};
 use crate::plant::{
-    Chain, Channel, InitialState, MeasuredMotion, PlantInputs, PlantParameters, simulate,
+    Channel, DeviceParts, InitialState, MeasuredMotion, PlantInputs, PlantParameters, simulate,
 };
 use crate::recording::Recording;
 use crate::recording::schema::{self, JointSignal, joint_quantity};
@@ -60,7 +60,7 @@ pub(super) enum Scene {
     /// In a run of a scenario.
     Run(&'static Shipped),
     /// In a part of a device alone.
-    Part(Chain),
+    Part(DeviceParts),
 }
 
 impl Scene {
@@ -68,7 +68,7 @@ impl Scene {
     pub(super) fn key(&self) -> String {
         match self {
             Self::Run(shipped) => shipped.path.to_owned(),
-            Self::Part(chain) => chain.name().to_owned(),
+            Self::Part(parts) => parts.name().to_owned(),
         }
     }
 }
@@ -146,20 +146,20 @@ pub(super) fn of(effect: &Effect) -> Presentation {
         "joint_backlash" => (&EDGE, whole, &["path", "torque"], None),
         "joint_friction" => (&EDGE, whole, &["torque", "speed"], None),
         "servo_lag" => (&EDGE, whole, &["trail", "speed"], None),
-        "load_behind_line" => return part(Chain::Regulator, size("load_time_constant_s=1", "load_time_constant_s", 1.0)),
-        "viscous_friction_by_direction" => return part(Chain::DrivenSlide, None),
+        "load_behind_line" => return part(DeviceParts::Regulator, size("load_time_constant_s=1", "load_time_constant_s", 1.0)),
+        "viscous_friction_by_direction" => return part(DeviceParts::DrivenSlide, None),
         _ if is_of_part(effect) => match effect.subsystem {
-            Subsystem::Chambers => return part(Chain::ClosedChamber, None),
-            _ => return part(Chain::Regulator, None),
+            Subsystem::Chambers => return part(DeviceParts::ClosedChamber, None),
+            _ => return part(DeviceParts::Regulator, None),
         },
         _ => (&STEPS, whole, &["outlet", "force"], None),
     };
     Presentation { scene: Scene::Run(run), window: (window != whole).then_some(window), signals, size }
 }
 
-fn part(chain: Chain, size: Option<Size>) -> Presentation {
+fn part(parts: DeviceParts, size: Option<Size>) -> Presentation {
     Presentation {
-        scene: Scene::Part(chain),
+        scene: Scene::Part(parts),
         window: None,
         signals: &["read", "speed"],
         size,
@@ -241,8 +241,8 @@ impl Stage {
     pub(super) fn new(scene: &Scene) -> Result<Self, AppError> {
         match scene {
             Scene::Run(shipped) => Self::of_run(shipped),
-            Scene::Part(chain) => Ok(Self {
-                believed: believed_part(*chain, &Self::of_run(&STEPS)?.believed),
+            Scene::Part(parts) => Ok(Self {
+                believed: believed_part(*parts, &Self::of_run(&STEPS)?.believed),
                 kind: Kind::Part,
                 telling: 1,
             }),
@@ -412,44 +412,44 @@ fn of_joint(recording: &Recording, joint: usize) -> Vec<Signal> {
 }
 
 /// A part of a device as it is believed.
-fn believed_part(chain: Chain, device: &PlantParameters) -> PlantParameters {
+fn believed_part(parts: DeviceParts, device: &PlantParameters) -> PlantParameters {
     let mut part = PlantParameters {
-        chain,
+        parts,
         ..device.clone()
     };
     // Slow enough for what is put in to be seen beside it.
     part.device.regulator.time_constant = 0.3;
     part.device.regulator.dead_time = 0.0;
-    if chain == Chain::DrivenSlide {
+    if parts == DeviceParts::DrivenSlide {
         part.device.seal_friction.viscous = 60.0;
     }
     part
 }
 
 /// Its inputs.
-fn inputs_of(chain: Chain, name: &str) -> PlantInputs {
+fn inputs_of(parts: DeviceParts, name: &str) -> PlantInputs {
     let times = |duration: f64| -> Vec<f64> {
         let count = (duration / 0.01).round() as usize;
         (0..=count).map(|index| 0.01 * index as f64).collect()
     };
-    let (time, set): (Vec<f64>, fn(f64) -> f64) = match (chain, name) {
+    let (time, set): (Vec<f64>, fn(f64) -> f64) = match (parts, name) {
         (_, "pressure_sensor_offset") => (times(3.5), |t| match t {
             t if t < 1.0 => 0.0,
             _ => 5e3,
         }),
-        (Chain::Regulator, _) => (times(8.0), |t| match t {
+        (DeviceParts::Regulator, _) => (times(8.0), |t| match t {
             t if t < 0.5 => 1e5,
             t if t < 2.5 => 3e5,
             t if t < 5.0 => 1e5,
             _ => 0.0,
         }),
-        (Chain::ClosedChamber, "chamber_shut_later") => (times(5.0), |_| 3e5),
-        (Chain::ClosedChamber, "chamber_cooling") => (times(30.0), |_| 3e5),
-        (Chain::ClosedChamber, _) => (times(300.0), |_| 3e5),
+        (DeviceParts::ClosedChamber, "chamber_shut_later") => (times(5.0), |_| 3e5),
+        (DeviceParts::ClosedChamber, "chamber_cooling") => (times(30.0), |_| 3e5),
+        (DeviceParts::ClosedChamber, _) => (times(300.0), |_| 3e5),
         _ => (times(6.0), |_| 0.0),
     };
     // To and fro at rising speeds.
-    let motion = (chain == Chain::DrivenSlide).then(|| {
+    let motion = (parts == DeviceParts::DrivenSlide).then(|| {
         const SWING: f64 = 0.02;
         let phase = |t: f64| 0.5 * std::f64::consts::PI * t * t / 3.0;
         let rate = |t: f64| std::f64::consts::PI * t / 3.0;
@@ -483,7 +483,7 @@ fn inputs_of(chain: Chain, name: &str) -> PlantInputs {
 
 /// The run of a part on the inputs that show an effect, with the effect or without.
 fn run_part(believed: &PlantParameters, effect: &Effect, has: bool) -> Signals {
-    let inputs = inputs_of(believed.chain, effect.name);
+    let inputs = inputs_of(believed.parts, effect.name);
     let mut plant = believed.clone();
     if effect.name == "chamber_shut_later" {
         // On a chamber that holds nothing would show it.
@@ -496,15 +496,15 @@ fn run_part(believed: &PlantParameters, effect: &Effect, has: bool) -> Signals {
         }
     }
     let trajectory = simulate(&plant, &inputs);
-    let (channel, title, axis, unit, factor) = match believed.chain {
-        Chain::ClosedChamber => (
+    let (channel, title, axis, unit, factor) = match believed.parts {
+        DeviceParts::ClosedChamber => (
             Channel::RegulatorPressure,
             "Chamber, read",
             "pressure",
             GAUGE,
             1e-5,
         ),
-        Chain::Regulator => (
+        DeviceParts::Regulator => (
             Channel::RegulatorPressure,
             "Regulator, read",
             "pressure",
@@ -532,8 +532,8 @@ fn run_part(believed: &PlantParameters, effect: &Effect, has: bool) -> Signals {
     }
     Signals {
         signals,
-        set: match believed.chain {
-            Chain::Regulator => inputs.set_pressure.iter().map(|p| 1e-5 * p).collect(),
+        set: match believed.parts {
+            DeviceParts::Regulator => inputs.set_pressure.iter().map(|p| 1e-5 * p).collect(),
             _ => Vec::new(),
         },
         time: inputs.time,

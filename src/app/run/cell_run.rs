@@ -7,10 +7,10 @@ use super::source::Source;
 use crate::cell::{Cell, EstimatedArm};
 use crate::metrics::{BoundCheck, Summary};
 use crate::recording::provenance::Provenance;
-use crate::recording::scene::Scene;
 use crate::recording::{Recording, RecordingError};
 use crate::run::{FinishedCell, run_cell_observed};
 use crate::scenario::{ChamferScenario, JudgedValue};
+use crate::scene::Scene;
 use crate::simulation::{FrameLog, SampleLog};
 
 /// Simulates the whole job, and gives what is recorded to listeners while it goes on.

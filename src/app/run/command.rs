@@ -15,10 +15,10 @@ use super::job::Manner;
 use super::settings::{Setting, Variant, with_flags};
 use super::source::Source;
 use crate::cell::Cell;
-use crate::recording::rerun::Opening;
 use crate::report::Style;
 use crate::run::Job;
 use crate::scenario::{AnyScenario, EffectRequest, KeyValue, ScenarioTemplate};
+use crate::viewer::Opening;
 
 #[derive(Debug, Args)]
 pub(in super::super) struct RunArguments {

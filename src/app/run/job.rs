@@ -18,14 +18,14 @@ use super::source::Source;
 use crate::cell::Cell;
 use crate::metrics::{BoundCheck, Summary};
 use crate::recording::csv::EdgeProfile;
-use crate::recording::finished_edge::FinishedEdge;
 use crate::recording::provenance::Provenance;
-use crate::recording::rerun::{Opening, RerunOptions, write_rrd};
-use crate::recording::scene::Scene;
 use crate::report::{Style, bench_markdown, bench_text, drives as told_drives, markdown, text};
 use crate::rig::Rig;
 use crate::run::Job;
 use crate::scenario::{BenchScenario, Scenario, files_of_cell};
+use crate::scene::Scene;
+use crate::scene::finished_edge::FinishedEdge;
+use crate::viewer::{Opening, RerunOptions, write_rrd};
 
 /// Settings of a run.
 #[derive(Debug, Clone, Copy)]

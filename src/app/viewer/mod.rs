@@ -9,7 +9,7 @@ pub(super) use native::NativeViewer;
 pub(super) use page::{Served, WebPage};
 pub(super) use watch::{PART_INTERVAL, Viewing, Watch};
 
-use crate::recording::rerun::{RrdFault, viewer_version};
+use crate::viewer::{RrdFault, viewer_version};
 
 /// Reasons why a recording cannot be looked at.
 #[derive(Debug, thiserror::Error)]

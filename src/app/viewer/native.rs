@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
 use super::ViewerError;
-use crate::recording::rerun::viewer_version;
+use crate::viewer::viewer_version;
 
 /// Names the program where it is not on the PATH.
 const PROGRAM: &str = "IDC_RERUN";

@@ -10,9 +10,9 @@ use std::time::Duration;
 
 use super::live_buffer::{LiveBuffer, LiveBufferWriter};
 use super::{NativeViewer, Served, ViewerError, WebPage};
-use crate::recording::rerun::{LiveOutlet, LiveRecording, RerunOptions};
-use crate::recording::scene::Scene;
 use crate::recording::{Recording, RecordingError};
+use crate::scene::Scene;
+use crate::viewer::{LiveOutlet, LiveRecording, RerunOptions};
 
 /// Simulated time between two parts that are sent [s].
 pub(in crate::app) const PART_INTERVAL: f64 = 0.2;

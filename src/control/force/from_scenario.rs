@@ -13,8 +13,8 @@ use super::{
     StabilityLimit,
 };
 use crate::device::DeviceParameters;
+use crate::keys::units::Unit;
 use crate::physics::push_only::PushOnly;
-use crate::scenario::units::Unit;
 use crate::scenario::{ControllerScenario, ForceLaw, ScenarioError, attainable_set_pressure};
 use crate::sensing::{CommandChain, SensingParameters};
 

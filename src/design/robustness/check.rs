@@ -3,11 +3,11 @@
 use super::{Distribution, Scatter, Scattering};
 use crate::design::file::{RobustnessKeys, ScatterKeys};
 use crate::design::variable::Variable;
+use crate::keys::check::Section;
+use crate::keys::document::Document;
+use crate::keys::suggestion::advice;
 use crate::scenario::ScenarioError;
-use crate::scenario::check::Section;
-use crate::scenario::document::Document;
 use crate::scenario::sections::{bench_sections, model_sections, scenario_sections};
-use crate::scenario::suggestion::advice;
 
 /// Checks the table.
 pub(in crate::design) fn scattering(

@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::scenario::error::Place;
+use crate::keys::error::Place;
 
 pub(super) use check::scattering;
 pub(super) use draws::draw;

@@ -1,11 +1,11 @@
 //! From a table of `[variables]` to the checked variable.
 
+use crate::keys::check::Section;
+use crate::keys::document::Document;
+use crate::keys::suggestion::advice;
+use crate::keys::units::Unit;
 use crate::scenario::ScenarioError;
-use crate::scenario::check::Section;
-use crate::scenario::document::Document;
 use crate::scenario::sections::{model_sections, scenario_sections};
-use crate::scenario::suggestion::advice;
-use crate::scenario::units::Unit;
 
 use super::{BORE, CatalogueEntry, Domain, ROD, Variable};
 use crate::design::catalogue::{STANDARD_CYLINDERS, standard_rod};

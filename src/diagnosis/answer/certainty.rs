@@ -162,7 +162,7 @@ impl Diagnosis {
 
     /// Whether a variant of a kind leaves as little of a part's channel as the best explanation.
     fn leaves_as_little(&self, kind: &dyn Fn(&[&str]) -> bool) -> bool {
-        let Some(channel) = self.believed.chain.output() else {
+        let Some(channel) = self.believed.parts.output() else {
             return false;
         };
         // A whole device's variants were compared by their evidence, and an effect that is not worth its numbers was taken out.

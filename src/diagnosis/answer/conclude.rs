@@ -24,7 +24,7 @@ use crate::diagnosis::recordings::recorded::COLUMNS;
 use crate::diagnosis::search::detectable::DetectableNumber;
 use crate::effects::UNLISTED;
 use crate::effects::{Effect, Subsystem, Which};
-use crate::plant::{CHANNELS, Chain, Channel, LawText};
+use crate::plant::{CHANNELS, Channel, DeviceParts, LawText};
 
 /// Variables named at most for a link.
 const MOST_REGIMES: usize = 5;
@@ -285,7 +285,7 @@ impl Diagnosis {
     /// Whether there is a part of the device alone.
     #[must_use]
     pub fn is_of_link(&self) -> bool {
-        self.believed.chain != Chain::Whole
+        self.believed.parts != DeviceParts::Whole
     }
 
     /// Details that are not scored.

@@ -8,7 +8,7 @@ use crate::diagnosis::answer::finding::Diagnosis;
 use crate::diagnosis::flange::Run;
 use crate::diagnosis::recordings::clean::clean;
 use crate::diagnosis::recordings::input::{DiagnosisInput, NamedRecording};
-use crate::plant::{CHANNELS, Chain, Channel, PlantInputs, PlantParameters, simulate};
+use crate::plant::{CHANNELS, Channel, DeviceParts, PlantInputs, PlantParameters, simulate};
 
 /// Variables that are of the air in the chambers.
 const OF_AIR: [&str; 5] = [
@@ -140,7 +140,7 @@ impl Diagnosis {
         [believed, tolerated, improved]: [Channels; 3],
         left_out: Option<Channels>,
     ) -> Compared {
-        let output = self.believed.chain.output();
+        let output = self.believed.parts.output();
         let empty = measured.iter().flatten().all(|value| value.is_nan());
         let own = |all: &Channels, channel: Channel| all[channel as usize].clone();
         let nothing = || vec![f64::NAN; time.len()];
@@ -168,7 +168,7 @@ impl Diagnosis {
     }
 
     fn balances(&self, improved: &PlantParameters) -> Vec<Balance> {
-        match self.believed.chain.output() {
+        match self.believed.parts.output() {
             Some(channel) => self.balance_of_output(channel).into_iter().collect(),
             None => self.balances_of_links(improved),
         }
@@ -186,7 +186,7 @@ impl Diagnosis {
         let before = of(&self.baseline.prediction.residuals);
         let telling = regimes(&self.evidence, &best.plant, &best.trajectories, &before);
         // A slide that a motor drives has no air, whatever its numbers say.
-        let airless = self.believed.chain == Chain::DrivenSlide;
+        let airless = self.believed.parts == DeviceParts::DrivenSlide;
         let mut known = telling.iter().map(|regime| regime.variable);
         let known = known.find(|name| !airless || !OF_AIR.contains(name));
         let variable = known.unwrap_or(TIME);

@@ -8,7 +8,7 @@ use crate::diagnosis::fit::free::{Free, Prior};
 use crate::diagnosis::search::EstablishedEffect;
 use crate::effects::{Coordinate, Effect};
 use crate::plant::registry::{PRESSURE_DRIFT, START_ERROR};
-use crate::plant::{CHANNELS, Chain, Channel, PlantParameters, Quantity};
+use crate::plant::{CHANNELS, Channel, DeviceParts, PlantParameters, Quantity};
 use crate::recording::csv::plausible_range;
 use crate::stats::median;
 
@@ -96,7 +96,7 @@ pub fn tolerated(quantity: Quantity, value: f64, tolerance: f64) -> Free {
 /// Quantities that are never known exactly of a rig with a part of the device: where a closed chamber starts, which its first readings tell to their noise [Pa], and
 /// how far its sensor drifts, one standard deviation [Pa/s].
 #[must_use]
-pub fn of_link(chain: Chain, noise: f64, drift: f64) -> Vec<Free> {
+pub fn of_link(parts: DeviceParts, noise: f64, drift: f64) -> Vec<Free> {
     let free = |quantity: Quantity, deviation: f64| Free {
         quantity,
         start: 0.0,
@@ -108,10 +108,10 @@ pub fn of_link(chain: Chain, noise: f64, drift: f64) -> Vec<Free> {
         },
     };
     let mut found = Vec::new();
-    if chain == Chain::ClosedChamber {
+    if parts == DeviceParts::ClosedChamber {
         found.push(free(START_ERROR.named("start_error_pa"), noise));
     }
-    if drift > 0.0 && chain.output() == Some(Channel::RegulatorPressure) {
+    if drift > 0.0 && parts.output() == Some(Channel::RegulatorPressure) {
         found.push(free(
             PRESSURE_DRIFT.named("pressure_sensor_drift_pa_per_s"),
             drift,
@@ -154,7 +154,7 @@ pub fn prepare(case: &DiagnosisInput) -> Result<Prepared, RecordedError> {
             .recorded
             .check(&recording.file, &cleaning.noise, &case.noise)?;
         let name = &recording.name;
-        if case.believed.chain == Chain::Whole {
+        if case.believed.parts == DeviceParts::Whole {
             notes.extend(missing(name, &readings, &case.noise));
         }
         let held = inputs.initial.samples();

@@ -2,7 +2,7 @@
 
 use crate::diagnosis::flange::Run;
 use crate::plant::{
-    CHANNELS, Chain, Channel, InitialState, InputError, MeasuredMotion, PlantInputs,
+    CHANNELS, Channel, DeviceParts, InitialState, InputError, MeasuredMotion, PlantInputs,
 };
 use crate::quantity::counted;
 use crate::recording::gaps::{Gap, longest_gap, longest_pause};
@@ -194,11 +194,11 @@ pub fn recorded(file: &str, recording: &Recording) -> Result<Recorded, RecordedE
 /// # Errors
 /// An input or a reading of that part is absent.
 pub fn recorded_of(
-    chain: Chain,
+    parts: DeviceParts,
     file: &str,
     recording: &Recording,
 ) -> Result<Recorded, RecordedError> {
-    let Some(output) = chain.output() else {
+    let Some(output) = parts.output() else {
         return recorded(file, recording);
     };
     let values = |quantity: &str| values_of(file, recording, quantity);
@@ -206,12 +206,12 @@ pub fn recorded_of(
     let count = time.len();
     let mut readings: [Vec<f64>; CHANNELS.len()] = std::array::from_fn(|_| vec![f64::NAN; count]);
     let measured = values(QUANTITIES[output as usize])?;
-    let mut set_pressure = match chain {
-        Chain::MovedPiston => values(schema::MEASURED_REGULATOR_PRESSURE_GAUGE)?,
-        Chain::Regulator => values(schema::SET_PRESSURE_GAUGE)?,
-        Chain::ContactFlange => values(schema::DESIRED_FORCE)?,
-        Chain::ClosedChamber => vec![first_level(&time, &measured); count],
-        Chain::Whole | Chain::DrivenSlide => vec![0.0; count],
+    let mut set_pressure = match parts {
+        DeviceParts::MovedPiston => values(schema::MEASURED_REGULATOR_PRESSURE_GAUGE)?,
+        DeviceParts::Regulator => values(schema::SET_PRESSURE_GAUGE)?,
+        DeviceParts::ContactFlange => values(schema::DESIRED_FORCE)?,
+        DeviceParts::ClosedChamber => vec![first_level(&time, &measured); count],
+        DeviceParts::Whole | DeviceParts::DrivenSlide => vec![0.0; count],
     };
     let filled = hold(&mut set_pressure);
     readings[output as usize] = measured;
@@ -226,7 +226,7 @@ pub fn recorded_of(
         place: 0,
     };
     check(file, &inputs)?;
-    if chain.takes_motion() {
+    if parts.takes_motion() {
         let stroke = values(schema::MEASURED_STROKE)?;
         let mut motion = MeasuredMotion::of(&inputs.time, &stroke);
         for index in motion.bridged(&inputs.time) {

@@ -8,7 +8,7 @@ use crate::diagnosis::fit::cross_validation::{Depth, left_out};
 use crate::diagnosis::fit::free::{Free, free_of};
 use crate::diagnosis::fit::hypothesis::{Hypothesis, covers, stands_for};
 use crate::effects::Effect;
-use crate::plant::Chain;
+use crate::plant::DeviceParts;
 
 /// Standard deviations by which two fits' costs differ by chance in a measure that they were not fitted to, of a chi-square of as many numbers as are free [1].
 const CHANCE: f64 = 6.0;
@@ -55,8 +55,8 @@ impl Search<'_> {
             .map(|h| self.refit(h, Refit::FULL))
             .collect();
         // Of a part of the device all such variants are fitted and told (`super::ruled_out`).
-        let own = match self.believed.chain {
-            Chain::Whole => self.shown.len()..best.effects.len(),
+        let own = match self.believed.parts {
+            DeviceParts::Whole => self.shown.len()..best.effects.len(),
             _ => 0..0,
         };
         for index in own {

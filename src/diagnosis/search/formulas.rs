@@ -6,7 +6,7 @@ use super::progress::{Observer, Step};
 use super::scale::Scale;
 use super::{Climb, Search};
 use crate::diagnosis::fit::hypothesis::Hypothesis;
-use crate::plant::{Chain, Latent};
+use crate::plant::{DeviceParts, Latent};
 
 /// Known effects that are fitted from where a formula stands, at most.
 const MOST_DIRECT: usize = 2;
@@ -82,7 +82,7 @@ impl Search<'_> {
         scale: &Scale,
         observer: &mut Observer<'_>,
     ) -> Vec<Hypothesis> {
-        if self.believed.chain != Chain::Whole {
+        if self.believed.parts != DeviceParts::Whole {
             return Vec::new();
         }
         let within = |h: &&Hypothesis| {
@@ -121,7 +121,7 @@ impl Search<'_> {
         let Some(best) = full.first() else { return };
         if scale.is_adequate(best)
             || best.unlisted().is_some()
-            || self.believed.chain != Chain::Whole
+            || self.believed.parts != DeviceParts::Whole
             || self.is_spent()
         {
             return;

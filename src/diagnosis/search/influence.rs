@@ -8,7 +8,7 @@ use super::progress::{Observer, Step};
 use crate::diagnosis::fit::free::Free;
 use crate::diagnosis::fit::hypothesis::Hypothesis;
 use crate::diagnosis::recordings::evidence::by_channel;
-use crate::plant::{CHANNELS, Chain, PlantParameters};
+use crate::plant::{CHANNELS, DeviceParts, PlantParameters};
 
 /// Influence of an effect on the channel that it moves most below which it is not named, in standard deviations of that channel's noise [1].
 pub(in crate::diagnosis) const BELOW_NOISE: f64 = 0.5;
@@ -20,7 +20,7 @@ impl Search<'_> {
     pub(super) fn drop_below_noise(&self, full: &mut Vec<Hypothesis>, observer: &mut Observer<'_>) {
         while let Some(best) = full.first()
             && best.unlisted().is_none()
-            && self.believed.chain == Chain::Whole
+            && self.believed.parts == DeviceParts::Whole
             && !self.is_spent()
         {
             let own = self.shown.len()..best.effects.len();

@@ -15,7 +15,7 @@
 //! - force_sensor_gain_error: grows with the pressure too, but does not change its sign at reversals.
 
 use super::*;
-use crate::plant::Chain;
+use crate::plant::DeviceParts;
 
 /// The effect.
 #[rustfmt::skip] // A table: one number a line.
@@ -32,7 +32,7 @@ pub const EFFECT: Effect = Effect {
     starts: |c, _| {
         let mut starts = vec![vec![3e-5, 2.0, 30.0, 5e-5], vec![1e-4, 3.0, 40.0, 5e-5]];
         // One small cylinder, moved slowly.
-        if c.plant.chain == Chain::MovedPiston {
+        if c.plant.parts == DeviceParts::MovedPiston {
             starts.extend([vec![2e-6, 4.0, 100.0, 5e-5], vec![1e-5, 2.0, 100.0, 5e-5]]);
         }
         starts

@@ -15,7 +15,7 @@ mod viscous_friction_by_direction;
 use super::catalogue::CATALOGUE;
 use super::effect::Effect;
 use super::parts::*;
-use crate::plant::Chain;
+use crate::plant::DeviceParts;
 
 /// All of them, in the order in which they are tried.
 pub static LINK_EFFECTS: &[Effect] = &[
@@ -34,29 +34,29 @@ pub static LINK_EFFECTS: &[Effect] = &[
 
 /// Effects that can act in a rig with so much of the device.
 #[must_use]
-pub fn candidates(chain: Chain) -> Vec<&'static Effect> {
+pub fn candidates(parts: DeviceParts) -> Vec<&'static Effect> {
     let of = |subsystems: &[Subsystem]| -> Vec<&'static Effect> {
         let all = CATALOGUE.iter().chain(LINK_EFFECTS);
         all.filter(|effect| subsystems.contains(&effect.subsystem))
             .collect()
     };
-    match chain {
-        Chain::Whole => CATALOGUE.iter().collect(),
-        Chain::MovedPiston => of(&[Subsystem::ForceBalance, Subsystem::Sensors]),
-        Chain::DrivenSlide => {
+    match parts {
+        DeviceParts::Whole => CATALOGUE.iter().collect(),
+        DeviceParts::MovedPiston => of(&[Subsystem::ForceBalance, Subsystem::Sensors]),
+        DeviceParts::DrivenSlide => {
             let mut effects = of(&[Subsystem::ForceBalance, Subsystem::Sensors]);
             // There is no pressure.
             effects.retain(|effect| effect.name != "pressure_dependent_friction");
             effects
         }
-        Chain::ClosedChamber => {
+        DeviceParts::ClosedChamber => {
             let mut effects = of(&[Subsystem::Chambers, Subsystem::Sensors]);
             effects.retain(|effect| LINK_EFFECTS.iter().any(|own| own.name == effect.name));
             effects
         }
-        Chain::Regulator => of(&[Subsystem::Regulator, Subsystem::Sensors]),
+        DeviceParts::Regulator => of(&[Subsystem::Regulator, Subsystem::Sensors]),
         // What it has to show is told from its impacts, not by a search (`diagnosis::flange`).
-        Chain::ContactFlange => Vec::new(),
+        DeviceParts::ContactFlange => Vec::new(),
     }
 }
 
@@ -66,13 +66,13 @@ mod tests {
 
     #[test]
     fn the_whole_device_has_the_catalogue_and_no_effect_has_two_names() {
-        assert_eq!(candidates(Chain::Whole).len(), CATALOGUE.len());
-        for chain in Chain::ALL {
-            let mut names: Vec<&str> = candidates(chain).iter().map(|e| e.name).collect();
+        assert_eq!(candidates(DeviceParts::Whole).len(), CATALOGUE.len());
+        for parts in DeviceParts::ALL {
+            let mut names: Vec<&str> = candidates(parts).iter().map(|e| e.name).collect();
             let count = names.len();
             names.sort_unstable();
             names.dedup();
-            assert!(names.len() == count, "{chain:?}");
+            assert!(names.len() == count, "{parts:?}");
         }
     }
 }

@@ -15,7 +15,7 @@
 //! - regulator_second_order: starts flat and overshoots, at steps of any size.
 
 use super::*;
-use crate::plant::Chain;
+use crate::plant::DeviceParts;
 
 /// The effect.
 #[rustfmt::skip] // A table: one number a line.
@@ -27,8 +27,8 @@ pub const EFFECT: Effect = Effect {
     ],
     // A small valve on a large load is far slower than one on a device.
     usual: |_, _| vec![1.5e5, 1.5e5],
-    starts: |c, _| match c.plant.chain {
-        Chain::Regulator => [3e4, 1e5, 3e5]
+    starts: |c, _| match c.plant.parts {
+        DeviceParts::Regulator => [3e4, 1e5, 3e5]
             .into_iter()
             .flat_map(|rate| [vec![rate, 1e7], vec![rate, rate], vec![1e7, rate]])
             .collect(),

@@ -4,10 +4,10 @@ use super::keys::{ChannelKeys, ConstantKeys, PressureKey};
 use crate::import::kinds;
 use crate::import::map::{ChannelMap, Constant, GAUGE, Pressure};
 use crate::import::units::{self, LogUnit};
+use crate::keys::check::Section;
+use crate::keys::document::Document;
 use crate::recording::Unit;
 use crate::scenario::ScenarioError;
-use crate::scenario::check::Section;
-use crate::scenario::document::Document;
 
 /// A quantity by its name, its unit, and what is added in SI where the two pressures differ [Pa].
 fn quantity(

@@ -6,8 +6,8 @@ use serde::Deserialize;
 use serde::de::{Deserializer, Error, Unexpected, Visitor};
 
 use crate::import::map::Column;
-use crate::scenario::keys::{Plain, keys};
-use crate::scenario::schema::of_file;
+use crate::keys::declaration::of_file;
+use crate::keys::declaration::{Plain, keys};
 
 impl Plain for FormKey {}
 impl Plain for ClockKey {}

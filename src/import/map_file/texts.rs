@@ -3,8 +3,8 @@
 use super::keys::{FileKeys, FormKey};
 use crate::import::encoding;
 use crate::import::map::{Separator, TextForm};
+use crate::keys::check::Section;
 use crate::scenario::ScenarioError;
-use crate::scenario::check::Section;
 
 /// What a text's keys say of its form.
 pub(super) fn text_form(section: &Section<'_>, keys: &FileKeys) -> Result<TextForm, ScenarioError> {

@@ -6,10 +6,10 @@ use super::texts::single;
 use crate::import::map::TimeMap;
 use crate::import::stamps::{DateOrder, TwoNumbers};
 use crate::import::units;
+use crate::keys::check::Section;
+use crate::keys::document::Document;
 use crate::recording::Unit;
 use crate::scenario::ScenarioError;
-use crate::scenario::check::Section;
-use crate::scenario::document::Document;
 
 /// `[file.time]` of a file of that form; `rate` is whether the file has a sample rate, which makes times of a counter.
 pub(super) fn time_map(

@@ -3,12 +3,12 @@
 use super::Layers;
 use super::keys::GasProcessKind;
 use crate::device::DeviceParameters;
+use crate::keys::error::ScenarioError;
 use crate::physics::gas_process::GasProcess;
 use crate::physics::hose::Hose;
 use crate::physics::regulator::SecondOrder;
 use crate::physics::supply_reservoir::SupplyReservoir;
 use crate::plant::registry;
-use crate::scenario::error::ScenarioError;
 
 /// Smallest natural frequency that stands for an oscillator [rad/s].
 const LOWEST_FREQUENCY: f64 = 0.1;

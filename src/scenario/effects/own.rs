@@ -1,10 +1,10 @@
 //! A law of a user's own: `acts_on` a port, `is` an expression over the variables there and over constants that stand beside it.
 
-use super::super::check::{Section, plain};
-use super::super::error::ScenarioError;
 use super::keys::{JOINT, KeyTable, NAME};
 use super::value::EffectValue;
 use crate::effects::Effect;
+use crate::keys::check::{Section, plain};
+use crate::keys::error::ScenarioError;
 use crate::plant::{
     Constant, Expression, ExpressionError, LawText, MOST_CONSTANTS, Port, SYMBOLS, Unit, kept_name,
 };

@@ -4,8 +4,8 @@ use std::fmt;
 
 use serde::Deserialize;
 
-use super::super::check::{Section, plain};
-use super::super::error::ScenarioError;
+use crate::keys::check::{Section, plain};
+use crate::keys::error::ScenarioError;
 
 /// A value.
 #[derive(Debug, Clone, PartialEq, Deserialize)]

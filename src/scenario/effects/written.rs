@@ -4,10 +4,10 @@ use std::fmt::Write as _;
 
 use toml_edit::{DocumentMut, value};
 
-use super::super::check::plain;
 use super::keys::LISTED;
 use super::own::{ACTS_ON, IS};
 use crate::effects::{Effect, UNLISTED, meaning};
+use crate::keys::check::plain;
 use crate::plant::LawText;
 
 /// An effect with all its numbers, reported or not, as [`Effect::parameters`] lists them.

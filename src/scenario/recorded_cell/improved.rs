@@ -5,8 +5,8 @@ use std::path::Path;
 use toml_edit::{DocumentMut, Item, value};
 
 use super::super::effects::{WrittenEffect, append, remove_effects};
-use super::super::error::ScenarioError;
 use super::RecordedCell;
+use crate::keys::error::ScenarioError;
 
 /// The file with these effects and no others; its paths made absolute, as it goes elsewhere.
 ///

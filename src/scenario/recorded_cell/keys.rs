@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::super::cell::ContactScenario;
 use super::super::effects::EffectKeys;
 use super::super::file::{ArmKeys, DeviceKeys, Kind, WorkpieceKeys};
-use super::super::keys::keys;
+use crate::keys::declaration::keys;
 use crate::plant::registry;
 
 keys! {

@@ -5,7 +5,7 @@ use std::fmt;
 use serde::Deserialize;
 use serde::de::{Deserializer, SeqAccess, Visitor};
 
-use super::super::check::plain;
+use crate::keys::check::plain;
 
 /// A value.
 #[derive(Debug, Clone, PartialEq)]

@@ -19,13 +19,11 @@ use std::fmt::Write as _;
 
 use serde::Deserialize;
 
-use super::super::check::Section;
-use super::super::document::Document;
-use super::super::error::ScenarioError;
-use crate::plant::Chain;
-use crate::plant::flange::{
-    CoveredRuns, FLANGE_NUMBERS, FittedFlange, FlangeModel, Reader, Ripple,
-};
+use crate::flange::{CoveredRuns, FLANGE_NUMBERS, FittedFlange, FlangeModel, Reader, Ripple};
+use crate::keys::check::Section;
+use crate::keys::document::Document;
+use crate::keys::error::ScenarioError;
+use crate::plant::DeviceParts;
 
 /// Name of the table.
 pub(super) const TABLE: &str = "flange";
@@ -50,13 +48,16 @@ pub(super) struct FlangeKeys {
 pub(super) fn flange(
     document: &Document<'_>,
     keys: Option<&FlangeKeys>,
-    chain: Chain,
+    parts: DeviceParts,
 ) -> Result<Option<FittedFlange>, ScenarioError> {
     let Some(keys) = keys else { return Ok(None) };
     let section = Section::new(document, TABLE);
-    if chain != Chain::ContactFlange {
-        let expected = format!("{:?} of [rig] chain beside it", Chain::ContactFlange.name());
-        return Err(section.refuse("fit", chain.name().to_owned(), expected));
+    if parts != DeviceParts::ContactFlange {
+        let expected = format!(
+            "{:?} of [rig] chain beside it",
+            DeviceParts::ContactFlange.name()
+        );
+        return Err(section.refuse("fit", parts.name().to_owned(), expected));
     }
     if keys.fit.is_empty() {
         return Err(section.missing("fit", "one table [[flange.fit]] at least"));

@@ -2,11 +2,11 @@
 
 use toml_edit::{DocumentMut, InlineTable, Item, Value};
 
-use super::super::check::plain;
 use super::super::effects::{WrittenEffect, append, as_written, remove_effects};
 use super::{Known, RigFile, flange, known, latent};
+use crate::flange::FittedFlange;
+use crate::keys::check::plain;
 use crate::plant::Latent;
-use crate::plant::flange::FittedFlange;
 
 /// What an improved file has beyond the nominal one.
 #[derive(Debug, Clone, Copy, Default)]

@@ -5,14 +5,14 @@ use std::sync::LazyLock;
 
 use serde::Deserialize;
 
-use super::super::keys::keys;
 use super::super::sections::keys as names_of;
 use super::entry::Entry;
 use super::flange::FlangeKeys;
 use super::known::KnownKeys;
 use super::number::{Number, NumberKeys};
 use super::quantities::{Described, described_numbers};
-use crate::plant::flange::FlangeModel;
+use crate::flange::FlangeModel;
+use crate::keys::declaration::keys;
 
 /// Numbers of a table, by key.
 pub(super) type Numbers = BTreeMap<String, Number>;

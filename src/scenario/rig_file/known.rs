@@ -16,13 +16,13 @@ use std::fmt::Write as _;
 
 use serde::Deserialize;
 
-use super::super::check::{Section, plain};
-use super::super::document::Document;
 use super::super::effects::as_written;
-use super::super::error::ScenarioError;
 use super::latent::float;
 use super::quantities::NUMBERS;
 use crate::effects::PresentEffect;
+use crate::keys::check::{Section, plain};
+use crate::keys::document::Document;
+use crate::keys::error::ScenarioError;
 use crate::plant::{Basis, CHANNELS, Latent, MOST_CONSTANTS, PlantParameters, Quantity, registry};
 
 /// Name of the table.

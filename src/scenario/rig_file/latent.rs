@@ -16,12 +16,12 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use super::super::check::{Section, plain};
-use super::super::document::Document;
 use super::super::effects::as_written;
-use super::super::error::ScenarioError;
-use super::super::suggestion::{join, nearest};
 use super::entry::Entry;
+use crate::keys::check::{Section, plain};
+use crate::keys::document::Document;
+use crate::keys::error::ScenarioError;
+use crate::keys::suggestion::{join, nearest};
 use crate::plant::{Basis, Latent, MOST_COEFFICIENTS, Port, Variable};
 
 /// Name of the table.

@@ -6,8 +6,7 @@ use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserializer, MapAccess, Visitor};
 
-/// Forms of a number, in serde's messages and ours.
-pub(in super::super) const NUMBER_OR_TABLE: &str = "a number or { value, tolerance }";
+use crate::keys::document::NUMBER_OR_TABLE;
 
 /// A number with what is known of its accuracy.
 #[derive(Debug, Clone, Copy, PartialEq)]

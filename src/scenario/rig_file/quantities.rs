@@ -1,10 +1,10 @@
 //! The numbers of a rig file: where each stands in the rig's description, and the range in which it is plausible as SI.
 
-use super::super::check::plain;
-use super::super::units::Unit;
 use crate::device::DeviceParameters;
+use crate::keys::check::plain;
+use crate::keys::units::Unit;
 use crate::physics::regulator::RegulatorParameters;
-use crate::plant::{CellParameters, Chain, Number, PlantParameters, registry};
+use crate::plant::{CellParameters, DeviceParts, Number, PlantParameters, registry};
 
 /// The numbers of the rig, in the order of the format; each stands under its dotted name.
 pub(super) static NUMBERS: [&Number; 21] = [
@@ -45,16 +45,16 @@ pub(super) const DRIFT: (&str, [f64; 2]) =
     ("sensors.regulator_pressure_drift_pa_per_s", [0.0, 1e4]);
 
 /// Numbers that a rig with a part of the device must have; for the whole of it all but the turns of the tool.
-pub(super) fn needs(chain: Chain, key: &str) -> bool {
-    match chain {
-        Chain::Whole => key != registry::SPINDLE_FREQUENCY.name,
-        Chain::MovedPiston => ["cylinder.count", "cylinder.bore_m"].contains(&key),
-        Chain::DrivenSlide => key == "cylinder.moving_mass_kg",
-        Chain::ClosedChamber => false,
-        Chain::ContactFlange => {
+pub(super) fn needs(parts: DeviceParts, key: &str) -> bool {
+    match parts {
+        DeviceParts::Whole => key != registry::SPINDLE_FREQUENCY.name,
+        DeviceParts::MovedPiston => ["cylinder.count", "cylinder.bore_m"].contains(&key),
+        DeviceParts::DrivenSlide => key == "cylinder.moving_mass_kg",
+        DeviceParts::ClosedChamber => false,
+        DeviceParts::ContactFlange => {
             ["cylinder.moving_mass_kg", "regulator.time_constant_s"].contains(&key)
         }
-        Chain::Regulator => ["regulator.gain", "regulator.time_constant_s"].contains(&key),
+        DeviceParts::Regulator => ["regulator.gain", "regulator.time_constant_s"].contains(&key),
     }
 }
 

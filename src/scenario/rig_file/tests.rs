@@ -5,9 +5,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::*;
-use crate::plant::flange::{
-    CoveredRuns, FLANGE_NUMBERS, FittedFlange, FlangeModel, Reader, Ripple,
-};
+use crate::flange::{CoveredRuns, FLANGE_NUMBERS, FittedFlange, FlangeModel, Reader, Ripple};
 use crate::plant::{Basis, ContactLaw, Latent, Port, SensorErrors, Variable};
 
 /// A rig file as its owner writes it.

@@ -2,16 +2,16 @@
 
 use std::collections::BTreeMap;
 
-use super::super::check::{Section, checked, plain};
-use super::super::document::Document;
-use super::super::error::ScenarioError;
-use super::super::keys::Table;
-use super::super::suggestion::{advice, join};
-use super::super::units::Unit;
 use super::keys::{ForceRampKeys, Numbers, RecordingsKeys, RigKeys, SharesKeys, sections};
 use super::number::Number;
 use super::quantities::{DRIFT, NUMBERS, SENSOR_KEYS, needs, split};
-use crate::plant::{Chain, PlantParameters, Quantity, registry};
+use crate::keys::check::{Section, checked, plain};
+use crate::keys::declaration::Table;
+use crate::keys::document::Document;
+use crate::keys::error::ScenarioError;
+use crate::keys::suggestion::{advice, join};
+use crate::keys::units::Unit;
+use crate::plant::{DeviceParts, PlantParameters, Quantity, registry};
 
 /// A number of the rig that is not exactly known.
 #[derive(Debug, Clone, Copy)]
@@ -35,8 +35,8 @@ pub(super) fn base(
     for (table, numbers) in keys.tables() {
         refuse_unknown(document, table, numbers)?;
     }
-    plant.chain = chain(document, keys)?;
-    if plant.chain == Chain::MovedPiston {
+    plant.parts = parts(document, keys)?;
+    if plant.parts == DeviceParts::MovedPiston {
         // The rig carries the piston: what it weighs does not show unless it is given.
         plant.device.moving_mass = LIGHT;
     }
@@ -45,10 +45,10 @@ pub(super) fn base(
         let numbers = tables.iter().find(|(name, _)| *name == table);
         numbers.is_some_and(|(_, numbers)| numbers.contains_key(key))
     };
-    let chain = plant.chain;
+    let parts = plant.parts;
     let asked = |dotted: &str| {
         let (table, key) = dotted.split_once('.').unwrap_or(("", dotted));
-        needs(chain, dotted) || stands(table, key)
+        needs(parts, dotted) || stands(table, key)
     };
     let mut tolerances = Vec::new();
     for known in NUMBERS.iter().filter(|known| asked(known.name)) {
@@ -82,13 +82,15 @@ pub(super) fn base(
 const LIGHT: f64 = 1e-3;
 
 /// The share of the device that there is.
-fn chain(document: &Document<'_>, keys: &RigKeys) -> Result<Chain, ScenarioError> {
+fn parts(document: &Document<'_>, keys: &RigKeys) -> Result<DeviceParts, ScenarioError> {
     let Some(name) = &keys.rig.chain else {
-        return Ok(Chain::Whole);
+        return Ok(DeviceParts::Whole);
     };
-    let known = Chain::ALL.into_iter().find(|chain| chain.name() == name);
+    let known = DeviceParts::ALL
+        .into_iter()
+        .find(|parts| parts.name() == name);
     known.ok_or_else(|| {
-        let names = Chain::ALL.map(Chain::name).join(", ");
+        let names = DeviceParts::ALL.map(DeviceParts::name).join(", ");
         let section = Section::new(document, "rig");
         section.refuse("chain", format!("{name:?}"), format!("one of {names}"))
     })
@@ -194,7 +196,7 @@ pub(super) fn check_together(
     plant: &PlantParameters,
 ) -> Result<(), ScenarioError> {
     let device = &plant.device;
-    if plant.chain == Chain::Whole && device.rod >= device.bore {
+    if plant.parts == DeviceParts::Whole && device.rod >= device.bore {
         let expected = format!("less than bore_m, {} m", plain(device.bore));
         let section = Section::new(document, "cylinder");
         return Err(section.refuse_number("rod_m", device.rod, expected));
@@ -206,10 +208,10 @@ pub(super) fn check_together(
 pub(super) fn sensors(
     document: &Document<'_>,
     keys: &RigKeys,
-    chain: Chain,
+    parts: DeviceParts,
 ) -> Result<(f64, [f64; 4]), ScenarioError> {
     let mut values = [f64::INFINITY; SENSOR_KEYS.len()];
-    let output = chain.output().map(|channel| channel as usize);
+    let output = parts.output().map(|channel| channel as usize);
     for (index, (value, (dotted, range))) in values.iter_mut().zip(SENSOR_KEYS).enumerate() {
         let (table, key) = split(dotted);
         // The rate must be known, and of a part of the device its output's noise.
@@ -311,7 +313,7 @@ pub(super) struct Recordings {
 pub(super) fn recordings(
     document: &Document<'_>,
     keys: RecordingsKeys,
-    chain: Chain,
+    parts: DeviceParts,
 ) -> Result<Recordings, ScenarioError> {
     let section = Section::new(document, "recordings");
     for (index, name) in keys.fit.iter().enumerate() {
@@ -325,11 +327,11 @@ pub(super) fn recordings(
     if let Some(name) = &keys.predict {
         section.text("predict", name)?;
     }
-    if !keys.force_ramp.is_empty() && chain != Chain::ContactFlange {
-        let found = chain.name().to_owned();
+    if !keys.force_ramp.is_empty() && parts != DeviceParts::ContactFlange {
+        let found = parts.name().to_owned();
         let expected = format!(
             "{:?} of [rig] chain where a recording has a force ramp",
-            Chain::ContactFlange.name()
+            DeviceParts::ContactFlange.name()
         );
         return Err(section.refuse("force_ramp", found, expected));
     }

@@ -2,11 +2,11 @@
 
 use serde_json::{Map, Value, json};
 
-use super::super::keys::Filled;
 use super::super::rig_file::{PartKeys, RecordingsKeys, SharesKeys, described_numbers};
-use super::plain::DIALECT;
 use crate::effects::candidates;
-use crate::plant::Chain;
+use crate::keys::declaration::Filled;
+use crate::keys::schema::DIALECT;
+use crate::plant::DeviceParts;
 
 /// Schema of a rig file.
 #[must_use]
@@ -17,7 +17,7 @@ pub fn schema() -> Value {
         let table = table.or_insert_with(|| table_of(Map::new()));
         table["properties"][described.key] = number(&described.text, Some(described.range));
     }
-    let chains = Chain::ALL.map(Chain::name);
+    let chains = DeviceParts::ALL.map(DeviceParts::name);
     tables.insert(
         "schema".to_owned(),
         json!({ "enum": [1, 2], "description": "Version of this format." }),
@@ -27,7 +27,7 @@ pub fn schema() -> Value {
     tables.insert("rig".to_owned(), part);
     tables.insert("recordings".to_owned(), RecordingsKeys::schema());
     tables.insert("shares".to_owned(), SharesKeys::schema());
-    let effects = Chain::ALL.into_iter().flat_map(candidates);
+    let effects = DeviceParts::ALL.into_iter().flat_map(candidates);
     tables.insert("effect".to_owned(), super::super::effects::schema(effects));
     tables.insert(
         "latent".to_owned(),

@@ -3,7 +3,7 @@
 use serde::Deserialize;
 
 use super::stages::white;
-use crate::scenario::keys::{Plain, keys};
+use crate::keys::declaration::{Plain, keys};
 use crate::sensing::AdcParameters;
 use crate::sensing::parameters::{
     paper_accelerometer, paper_load_cell, paper_outlet_pressure, paper_position, paper_set_value,

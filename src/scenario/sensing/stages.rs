@@ -1,12 +1,12 @@
 //! Each stage of `[sensing]`: its kind, and what its values must be to each other.
 
-use super::super::check::Section;
-use super::super::error::ScenarioError;
-use super::super::keys::Table;
 use super::keys::{
     AccelerationKeys, CommandChainKeys, CommandChainKind, FilterKeys, FilterKind, ForceKeys,
     Preset, RegulatorPressureKeys, STANDARD_GRAVITY, SensorKind, StrokeKeys,
 };
+use crate::keys::check::Section;
+use crate::keys::declaration::Table;
+use crate::keys::error::ScenarioError;
 use crate::sensing::parameters::{paper_accelerometer, paper_outlet_pressure};
 use crate::sensing::{
     AccelerometerParameters, AdcParameters, AmplifierParameters, CommandChain, FilterParameters,

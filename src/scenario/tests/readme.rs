@@ -7,11 +7,11 @@ use toml::{Table, Value};
 use super::super::AnyScenario;
 use super::super::bench_file::BenchFile;
 use super::super::file::ScenarioFile;
-use super::super::keys::{Key, tables};
 use super::super::recorded_cell::RecordedCellFile;
-use super::super::suggestion::join;
-use super::super::units::Unit;
 use super::{MINIMAL, MINIMAL_BENCH, read_any, scenarios};
+use crate::keys::declaration::{Key, tables};
+use crate::keys::suggestion::join;
+use crate::keys::units::Unit;
 
 /// Which of the two formats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

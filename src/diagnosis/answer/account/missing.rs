@@ -273,7 +273,7 @@ impl Diagnosis {
 
     /// Variants of the explanation of a part of the device, with what they leave.
     pub(super) fn what_was_ruled_out(&self) -> String {
-        let Some(channel) = self.believed.chain.output() else {
+        let Some(channel) = self.believed.parts.output() else {
             return String::new();
         };
         let (unit, factor) = CHANNEL_UNITS[channel as usize];

@@ -4,7 +4,7 @@
 //! Without one the flange comes with the whole desired force, which presses its slide on its stop.
 
 use crate::diagnosis::flange::{ForceRamp, Run, RunMetrics};
-use crate::plant::flange::{FlangeCourse, Ripple, rippled, towards_part};
+use crate::flange::{FlangeCourse, Ripple, rippled, towards_part};
 
 /// Seed of the ripple: another gives another course of the same size.
 const SEED: u64 = 1;

@@ -1,4 +1,4 @@
-//! A contact flange as a simulation: [`crate::plant::flange`] fitted to runs, and other runs predicted with it.
+//! A contact flange as a simulation: [`crate::flange`] fitted to runs, and other runs predicted with it.
 //!
 //! Inputs of a run are the arm's speed, the desired force and the force ramp; the contact force is predicted. What of it is met: `residuals`; how: `solve`.
 //! Fits that are nearly as good as the best all count, so that what the runs do not tell apart shows as a range of what is predicted.
@@ -13,7 +13,7 @@ mod sliding;
 mod solve;
 
 use crate::diagnosis::flange::{Run, RunMetrics};
-use crate::plant::flange::{CoveredRuns, FittedFlange, FlangeModel, Ripple};
+use crate::flange::{CoveredRuns, FittedFlange, FlangeModel, Ripple};
 use crate::stats::NORMAL_95;
 use prediction::{Logged, predict_run};
 use report::{FittedNumber, SimulatedFlange, SimulatedRun};

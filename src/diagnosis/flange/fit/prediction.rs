@@ -3,7 +3,7 @@
 use super::course::RunCourse;
 use super::report::SimulatedResult;
 use crate::diagnosis::flange::{MIDDLE, Run, RunMetrics, deviation};
-use crate::plant::flange::{FlangeCourse, FlangeModel, Reader, Ripple, SAMPLED, flange_force};
+use crate::flange::{FlangeCourse, FlangeModel, Reader, Ripple, SAMPLED, flange_force};
 use crate::stats::{mean, median};
 
 /// Time before contact from which a run is simulated [s].

@@ -6,7 +6,7 @@
 use super::course::RunCourse;
 use super::prediction::PHASES;
 use crate::diagnosis::flange::{Run, RunMetrics, power_at};
-use crate::plant::flange::{FlangeModel, Reader, SAMPLED, flange_force};
+use crate::flange::{FlangeModel, Reader, SAMPLED, flange_force};
 
 /// Time before contact from which a run is simulated [s].
 const LEAD: f64 = 0.03;

@@ -12,7 +12,7 @@ use super::prediction::{Logged, predict_run};
 use super::report::SimulatedResult;
 use super::residuals::Targets;
 use super::solve::{Solution, refitted};
-use crate::plant::flange::{FlangeModel, Ripple};
+use crate::flange::{FlangeModel, Ripple};
 use crate::stats::student_90;
 
 /// What is to be expected of the logarithms of peak, ringing, settling and spread [1].

@@ -1,7 +1,7 @@
 //! The arm's ripple, of the force while it slides: its size meets the spread of the force, its bandwidth the spread of the averaged force (`super::prediction::spreads`).
 
 use super::prediction::{Logged, logged, spreads};
-use crate::plant::flange::{FlangeModel, Ripple};
+use crate::flange::{FlangeModel, Ripple};
 
 /// Bandwidths looked at [Hz].
 const BANDWIDTHS: [f64; 11] = [

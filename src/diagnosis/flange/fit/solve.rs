@@ -15,7 +15,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::residuals::Targets;
-use crate::plant::flange::{FLANGE_NUMBERS, FlangeModel};
+use crate::flange::{FLANGE_NUMBERS, FlangeModel};
 
 /// What is usual of each number, and the deviation of its logarithm. The masses' are by the rig's moving mass.
 const USUAL: [(f64, f64); FLANGE_NUMBERS] = [

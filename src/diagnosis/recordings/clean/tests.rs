@@ -40,7 +40,7 @@ fn plant() -> PlantParameters {
         sensors: SensorErrors::NONE,
         latent: None,
         own: Vec::new(),
-        chain: Chain::Whole,
+        parts: DeviceParts::Whole,
         links: LinkParameters::NONE,
     }
 }
