@@ -177,7 +177,7 @@ impl Search<'_> {
         let fewer = (&unexplained, &all[..], &mut climb.asked);
         weighed.add_unlisted(&mut full, fewer, &scale, observer);
         weighed.add_nominal(&mut full, observer);
-        weighed.drop_below_noise(&mut full, observer);
+        weighed.drop_below_noise(&mut full, &scale, observer);
         weighed.add_close(&mut full, &all, &scale, observer);
         let roughly = self.tried_roughly(&full, &all, (&unexplained, noise));
         (full, roughly, weighed.model_error)

@@ -17,6 +17,9 @@ pub(in crate::diagnosis) const IMMATERIAL: f64 = 1e-3;
 /// Share of the mismatch beyond which what is left is physics of its own [1].
 const UNEXPLAINED: f64 = 0.05;
 
+/// Share of a mismatch that one effect must explain to count as its cause [1].
+const HALF: f64 = 0.5;
+
 /// The scale of a search.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::diagnosis) struct Scale {
@@ -76,9 +79,15 @@ impl Scale {
         self.left_roughly(hypothesis) < 2.0 * IDEALISATION_LEFT
     }
 
+    /// Whether a lighter hypothesis leaves more than noise, and the richer one explains at least half of that.
+    pub fn is_needed(&self, richer: &Hypothesis, lighter: &Hypothesis) -> bool {
+        let left = |h: &Hypothesis| h.fit.cost() - self.count;
+        !self.is_adequate(lighter) && left(richer) < HALF * left(lighter)
+    }
+
     /// Whether it explains at least half.
     pub fn is_half_explained(&self, hypothesis: &Hypothesis) -> bool {
-        self.left_roughly(hypothesis) < 0.5
+        self.left_roughly(hypothesis) < HALF
     }
 
     /// Whether one more effect, or a richer law, could gain nothing that would be worth a mention.
