@@ -7,7 +7,7 @@ use crate::source::{Sources, Token, behind, product, sources, tokens};
 
 /// Most lines of a function, from its name to its end [-].
 const MOST_LINES: usize = 80;
-/// Most arguments, `self` among them [-].
+/// Most arguments, `self` among them, each of a tuple or an array that is taken apart in the list counted [-].
 const MOST_ARGUMENTS: usize = 7;
 
 /// A function: its file, its name.
@@ -74,30 +74,39 @@ fn functions(tokens: &[Token]) -> Vec<Function> {
     found
 }
 
-/// Number of arguments between the brackets.
+/// Number of arguments between the brackets; what is taken apart where it is named counts by its parts.
 fn arguments(list: &[Token]) -> usize {
-    let (mut count, mut at, mut depth, mut any) = (0, 0, 0, false);
+    let (mut count, mut at, mut depth, mut parts) = (0, 0, 0, 0);
     while at < list.len() {
         match list[at].text.as_str() {
-            "(" | "[" | "{" => {
-                at = behind(list, at);
-                any = true;
+            bracket @ ("(" | "[" | "{") => {
+                let end = behind(list, at);
+                if parts == 0 && bracket != "{" {
+                    parts = arguments(&list[at + 1..end - 1]);
+                }
+                parts = parts.max(1);
+                at = end;
+                continue;
+            }
+            // An attribute of an argument is none.
+            "#" => {
+                at = behind(list, at + 1);
                 continue;
             }
             "<" => depth += 1,
             ">" if list[at - 1].text != "-" => depth -= 1,
             "," if depth == 0 => {
-                count += 1;
-                any = false;
+                count += parts;
+                parts = 0;
                 at += 1;
                 continue;
             }
             _ => (),
         }
-        any = true;
+        parts = parts.max(1);
         at += 1;
     }
-    count + usize::from(any)
+    count + parts
 }
 
 /// Places of the product's functions of which this holds.
@@ -153,6 +162,10 @@ fn lengths_and_arguments_are_counted() {
             "fn a<F: Fn(u8, u8) -> B>(f: F, g: (u8, u8), h: fn(u8) -> [u8; 2],) -> [u8; 3] {\n}"
         ),
         one("a", 2, 3)
+    );
+    assert_eq!(
+        counted("fn a((b, [c, d]): (u8, [u8; 2]), [e, _]: [f64; 2], f: [u8; 9], &g: &u8) {}"),
+        one("a", 1, 7)
     );
     assert_eq!(
         counted("trait T { fn a(&self); fn b(&self) {\n} }"),

@@ -115,6 +115,17 @@ impl CollisionModel {
 }
 
 /// A motion with the links' poses at its knots.
+/// A stretch of the way between two knots.
+struct Stretch<'a> {
+    cubic: &'a Cubic,
+    /// Shares of the way at its ends [1].
+    shares: [f64; 2],
+    /// Poses of the links there.
+    links: [&'a Links; 2],
+    /// Distances of the pair there [m].
+    apart: [f64; 2],
+}
+
 struct Sweep<'a> {
     model: &'a CollisionModel,
     motion: &'a JointMotion,
@@ -182,9 +193,14 @@ impl<'a> Sweep<'a> {
         }
         if to == from + 1 {
             let cubic = &self.motion.cubics[from];
-            let ends = [&self.links[from], &self.links[to]];
+            let stretch = Stretch {
+                cubic,
+                shares: [0.0, 1.0],
+                links: [&self.links[from], &self.links[to]],
+                apart,
+            };
             return self
-                .within(pair, (cubic, [0.0, 1.0]), ends, apart)
+                .within(pair, &stretch)
                 .map(|share| Place { knot: from, share });
         }
         let middle = usize::midpoint(from, to);
@@ -202,13 +218,13 @@ impl<'a> Sweep<'a> {
     }
 
     /// Within a cubic that spans shares of the way between two knots, with the links' poses at its ends.
-    fn within(
-        &self,
-        pair: &Pair,
-        (cubic, [from, to]): (&Cubic, [f64; 2]),
-        [start, end]: [&Links; 2],
-        apart: [f64; 2],
-    ) -> Option<f64> {
+    fn within(&self, pair: &Pair, stretch: &Stretch<'_>) -> Option<f64> {
+        let Stretch {
+            cubic,
+            shares: [from, to],
+            links: [start, end],
+            apart,
+        } = *stretch;
         let way = self.short_way(pair, cubic, [start, end]);
         if 0.5 * (apart[0] + apart[1] - way) > pair.margin {
             return None;
@@ -220,22 +236,23 @@ impl<'a> Sweep<'a> {
         let middle = 0.5 * (from + to);
         let links = self.model.links(halves[0].end());
         let there = self.distance(pair, &links, way);
-        self.within(
-            pair,
-            (&halves[0], [from, middle]),
-            [start, &links],
-            [apart[0], there],
-        )
-        .or_else(|| {
+        let first = Stretch {
+            cubic: &halves[0],
+            shares: [from, middle],
+            links: [start, &links],
+            apart: [apart[0], there],
+        };
+        self.within(pair, &first).or_else(|| {
             if there <= pair.margin {
                 return Some(middle);
             }
-            self.within(
-                pair,
-                (&halves[1], [middle, to]),
-                [&links, end],
-                [there, apart[1]],
-            )
+            let second = Stretch {
+                cubic: &halves[1],
+                shares: [middle, to],
+                links: [&links, end],
+                apart: [there, apart[1]],
+            };
+            self.within(pair, &second)
         })
     }
 

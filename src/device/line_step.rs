@@ -5,13 +5,11 @@
 //! sub-step, and ends on its last stage, so that a fast line comes out where inflow and outflow balance.
 
 use super::integrate::{Flow, Mode, Surroundings};
-use super::load::{Load, PistonMotion};
-use super::pneumatics::Device;
+use super::load::Load;
 use super::state::AirState;
 use crate::physics::flow_slope::FlowSlope;
 use crate::physics::hose::Hose;
 use crate::physics::line_chain::{LineChain, UPSTREAM};
-use crate::physics::valve::ValvePosition;
 
 /// Share of the step that is implicit [1].
 const IMPLICIT_SHARE: f64 = 0.25;
@@ -101,17 +99,7 @@ impl<L: Load> Surroundings<'_, L> {
             }
             if stage > 0 {
                 let share = h * IMPLICIT_SHARE;
-                feed = self.device.feed(
-                    hose,
-                    &flow.air,
-                    (
-                        self.valve,
-                        self.device.supply_conductance(&self.disturbance),
-                    ),
-                    outlet,
-                    flow.motion,
-                    (held, share),
-                );
+                feed = self.feed(hose, &flow, outlet, (held, share));
             }
             feed.put(&mut flow.air);
             rates[stage] = self.rates::<LEDGER>(&flow, start.motion.stroke, at, outlet, mode);
@@ -159,25 +147,19 @@ impl Feed {
     }
 }
 
-impl Device {
+impl<L: Load> Surroundings<'_, L> {
     /// Solution of `feed = held + share * rates(feed)` at an outlet pressure of the regulator [Pa gauge] through a valve's supply orifice.
-    fn feed(
-        &self,
-        hose: &Hose,
-        air: &AirState,
-        (valve, supply_conductance): (ValvePosition, f64),
-        outlet: f64,
-        motion: PistonMotion,
-        (held, share): (Feed, f64),
-    ) -> Feed {
-        let gas = &self.parameters.gas;
-        let fed = valve.supplied();
-        let volumes = [0, 1].map(|i| self.chambers[i].volume(motion.stroke));
-        let after = self.pressures_of(air, volumes)[fed];
-        let backward = (gas.temperature / self.temperature_of(air, fed)).sqrt();
+    fn feed(&self, hose: &Hose, flow: &Flow, outlet: f64, (held, share): (Feed, f64)) -> Feed {
+        let device = self.device;
+        let gas = &device.parameters.gas;
+        let fed = self.valve.supplied();
+        let volumes = [0, 1].map(|i| device.chambers[i].volume(flow.motion.stroke));
+        let after = device.pressures_of(&flow.air, volumes)[fed];
+        let backward = (gas.temperature / device.temperature_of(&flow.air, fed)).sqrt();
+        let supply_conductance = device.supply_conductance(&self.disturbance);
         let on = |pressure: f64| {
             let FlowSlope { flow, slope } =
-                self.flow.flow_slope(supply_conductance, pressure, after);
+                (device.flow).flow_slope(supply_conductance, pressure, after);
             let factor = if pressure < after { backward } else { 1.0 };
             FlowSlope {
                 flow: factor * flow,
@@ -208,7 +190,7 @@ impl Device {
             }
         };
         let before = gas.atmosphere + outlet;
-        let Some(reservoir) = &self.parameters.supply_reservoir else {
+        let Some(reservoir) = &device.parameters.supply_reservoir else {
             return fed(before, 0.0);
         };
         let drawn = |before: f64| {

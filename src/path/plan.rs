@@ -29,11 +29,9 @@ fn outlines(request: &PlanRequest, most: usize) -> Result<Vec<Outline>, PlanErro
     let blockade = |angles: &[Vec<f64>]| collisions::blockade(request, &coarse, angles);
     standing
         .choose(
-            &standing.spins(request.roll),
+            request,
             |spin| coarse.poses(request, spin),
             (passable, blockade),
-            request.seed_posture,
-            request.seed,
             most,
         )
         .map_err(|(index, obstacle)| coarse.failure(request, index, obstacle))

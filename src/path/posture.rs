@@ -385,17 +385,15 @@ impl Standing<'_> {
     /// The best try's pose that is not reached or passed, and why.
     pub fn choose(
         &self,
-        spins: &[f64],
+        request: &PlanRequest,
         poses_at: impl Fn(f64) -> (Vec<DPose3>, Vec<DVec3>),
         (passable, blockade): (
             impl Fn(&[Vec<f64>]) -> bool,
             impl Fn(&[Vec<f64>]) -> Option<(usize, Obstacle)>,
         ),
-        seed_posture: Option<&[f64]>,
-        seed: u64,
         most: usize,
     ) -> Result<Vec<Outline>, (usize, Obstacle)> {
-        let (mut ways, failure) = self.ways(spins, poses_at, seed_posture, seed);
+        let (mut ways, failure) = self.ways(request, poses_at);
         // Of ways as good as each other to rounding the first found stays first.
         let rank = |way: &PassedWay| (way.worth / 1e-9).round();
         ways.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
@@ -432,16 +430,14 @@ impl Standing<'_> {
     /// All ways through the poses, and of those that ended where the one did that came farthest.
     fn ways(
         &self,
-        spins: &[f64],
+        request: &PlanRequest,
         poses_at: impl Fn(f64) -> (Vec<DPose3>, Vec<DVec3>),
-        seed_posture: Option<&[f64]>,
-        seed: u64,
     ) -> (Vec<PassedWay>, Option<(usize, Stop)>) {
         let mut ways: Vec<PassedWay> = Vec::new();
         let mut failure: Option<(usize, Stop)> = None;
-        for &spin in spins {
+        for spin in self.spins(request.roll) {
             let (poses, forces) = poses_at(spin);
-            let starts = self.starts(&poses[0], seed_posture, seed);
+            let starts = self.starts(&poses[0], request.seed_posture, request.seed);
             if starts.is_empty() && failure.is_none() {
                 let middle: Vec<f64> = self
                     .chain
@@ -467,7 +463,7 @@ impl Standing<'_> {
                             .fold(f64::INFINITY, f64::min);
                         // Beyond comfortable all are as good as each other.
                         let mut worth = comfort.min(1.0);
-                        if let Some(posture) = seed_posture {
+                        if let Some(posture) = request.seed_posture {
                             let far = posture
                                 .iter()
                                 .zip(&start)

@@ -35,18 +35,35 @@ pub(super) struct AxialFriction {
     pub most: f64,
 }
 
+/// How the ball touches the part.
+pub(super) struct BallTouch {
+    /// Centre of the ball [m].
+    pub centre: DVec3,
+    /// Outward normal of the part there.
+    pub normal: DVec3,
+    /// Force along it [N].
+    pub force: f64,
+    /// Stiffness of the contact [N/m].
+    pub stiffness: f64,
+}
+
 impl ContactFriction {
     /// Takes the ball to where its centre is now [m], pressed with a force [N] along a normal with a coefficient of friction against a contact of a
     /// stiffness [N/m]; gives the friction on a slide at a stroke [m]. What carries the ball gives by so much in a step [m/N]: the stiffness is less by
     /// that, or what is known a step late would shake it.
     pub fn advance(
         &mut self,
-        centre: DVec3,
-        (normal, force): (DVec3, f64),
-        (coefficient, stiffness): (f64, f64),
+        touch: &BallTouch,
+        coefficient: f64,
         give: f64,
         (slide, stroke): (DVec3, f64),
     ) -> AxialFriction {
+        let BallTouch {
+            centre,
+            normal,
+            force,
+            stiffness,
+        } = *touch;
         let before = self.centre.replace(centre).unwrap_or(centre);
         let most = coefficient * force;
         if most <= 0.0 {
@@ -84,13 +101,13 @@ mod tests {
 
     fn after(friction: &mut ContactFriction, x: f64, force: f64, slide: DVec3) -> f64 {
         let centre = DVec3::new(x, 0.0, 0.3);
-        let axial = friction.advance(
+        let touch = BallTouch {
             centre,
-            (NORMAL, force),
-            (0.15, STIFFNESS),
-            0.0,
-            (slide, 0.04),
-        );
+            normal: NORMAL,
+            force,
+            stiffness: STIFFNESS,
+        };
+        let axial = friction.advance(&touch, 0.15, 0.0, (slide, 0.04));
         axial.at(0.04)
     }
 

@@ -2,7 +2,7 @@
 
 use super::arm_trajectory::ContactKinematics;
 use super::contact::ContactParameters;
-use super::contact_friction::{AxialFriction, ContactFriction};
+use super::contact_friction::{AxialFriction, BallTouch, ContactFriction};
 use super::cubic::Cubic;
 use super::hold::Hold;
 use super::initial_state::{HeldMotion, InitialState};
@@ -328,13 +328,14 @@ impl<'a> Replay<'a> {
             riding.length * joints.mobility(i, motion.stroke, riding.normal)
         });
         let plant = self.plant;
-        rig.friction.advance(
+        let touch = BallTouch {
             centre,
-            (riding.normal, force),
-            (plant.cell.friction, plant.contact.stiffness_at(force)),
-            give,
-            (slide, motion.stroke),
-        )
+            normal: riding.normal,
+            force,
+            stiffness: plant.contact.stiffness_at(force),
+        };
+        let slide = (slide, motion.stroke);
+        (rig.friction).advance(&touch, plant.cell.friction, give, slide)
     }
 
     /// A load over `dt` [s] from sample `i` on, on joints that bend under it, `share` of the contact force being along the slide.

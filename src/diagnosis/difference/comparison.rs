@@ -78,12 +78,23 @@ pub struct Balance {
     pub after: Vec<f64>,
 }
 
+/// A recording as it is simulated.
+struct Simulated {
+    /// By the nominal model, by it within its tolerances, by the improved one.
+    models: [Channels; 3],
+    /// By a fit to the other recordings, where there is one.
+    left_out: Option<Channels>,
+}
+
 impl Diagnosis {
     /// The comparison, the improved model as its file says it.
     #[must_use]
     pub fn comparison(&self, case: &DiagnosisInput, improved: &PlantParameters) -> Comparison {
         let models = [&self.believed, &self.baseline.plant, improved];
-        let simulated = |inputs: &PlantInputs| models.map(|plant| simulate(plant, inputs).readings);
+        let simulated = |inputs: &PlantInputs, left_out: Option<Channels>| Simulated {
+            models: models.map(|plant| simulate(plant, inputs).readings),
+            left_out,
+        };
         let recordings = self.evidence.recordings.iter().enumerate();
         let fitted = recordings.map(|(index, measured)| {
             let inputs = &measured.inputs;
@@ -92,15 +103,14 @@ impl Diagnosis {
             self.compared(
                 shown,
                 measured.readings.clone(),
-                simulated(inputs),
-                left_out,
+                &simulated(inputs, left_out),
             )
         });
         let unseen = case.unseen.iter().map(|unseen| {
             let inputs = &unseen.recorded.inputs;
             let shown = (unseen.name.as_str(), true, inputs.time.as_slice());
             let measured = self.cleaned(case, unseen);
-            self.compared(shown, measured, simulated(inputs), None)
+            self.compared(shown, measured, &simulated(inputs, None))
         });
         Comparison {
             recordings: fitted.chain(unseen).collect(),
@@ -137,9 +147,9 @@ impl Diagnosis {
         &self,
         (name, unseen, time): (&str, bool, &[f64]),
         measured: Channels,
-        [believed, tolerated, improved]: [Channels; 3],
-        left_out: Option<Channels>,
+        simulated: &Simulated,
     ) -> Compared {
+        let [believed, tolerated, improved] = &simulated.models;
         let output = self.believed.parts.output();
         let empty = measured.iter().flatten().all(|value| value.is_nan());
         let own = |all: &Channels, channel: Channel| all[channel as usize].clone();
@@ -158,10 +168,11 @@ impl Diagnosis {
                 .map(|channel| ComparedChannel {
                     channel,
                     measured: own(&measured, channel),
-                    believed: own(&believed, channel),
-                    tolerated: own(&tolerated, channel),
-                    improved: own(&improved, channel),
-                    left_out: (left_out.as_ref()).map_or_else(nothing, |all| own(all, channel)),
+                    believed: own(believed, channel),
+                    tolerated: own(tolerated, channel),
+                    improved: own(improved, channel),
+                    left_out: (simulated.left_out.as_ref())
+                        .map_or_else(nothing, |all| own(all, channel)),
                 })
                 .collect(),
         }

@@ -100,8 +100,9 @@ impl Candidate {
                 .chain(directed)
                 .collect(),
             latent: latent(
-                (curve.port, curve.variable, curve.directed),
-                (&text, constants, values),
+                (curve.variable, curve.directed),
+                law_text(curve.port, &text, constants),
+                values,
                 (visited, typical),
             ),
         }
@@ -182,8 +183,9 @@ impl Candidate {
         }
         Some(Self {
             latent: latent(
-                (self.latent.port, self.latent.variable, self.latent.directed),
-                (&text, constants.collect(), values),
+                (self.latent.variable, self.latent.directed),
+                law_text(self.latent.port, &text, constants.collect()),
+                values,
                 (formula.visited, formula.typical),
             ),
             free: all,
@@ -192,31 +194,37 @@ impl Candidate {
     }
 }
 
-fn latent(
-    (port, variable, directed): (Port, Variable, bool),
-    (text, constants, values): (&str, Vec<Constant>, Vec<f64>),
-    (visited, typical): ([f64; 2], Moment),
-) -> Latent {
+/// A law of the search's own, of a text that the grammar gives.
+fn law_text(port: Port, text: &str, constants: Vec<Constant>) -> LawText {
     let names: Vec<&str> = (SYMBOLS.iter().map(|symbol| symbol.name))
         .chain(constants.iter().map(|constant| constant.name))
         .collect();
     let expression =
         Expression::read(text, &names).expect("the grammar's forms are expressions of these names");
-    Latent {
+    LawText {
+        name: UNLISTED,
         port,
+        expression,
+        constants,
+    }
+}
+
+fn latent(
+    (variable, directed): (Variable, bool),
+    law: LawText,
+    coefficients: Vec<f64>,
+    (visited, typical): ([f64; 2], Moment),
+) -> Latent {
+    Latent {
+        port: law.port,
         variable,
         directed,
         basis: Basis::Formula(Arc::new(Formula {
-            law: LawText {
-                name: UNLISTED,
-                port,
-                expression,
-                constants,
-            },
+            law,
             visited,
             typical,
         })),
-        coefficients: values,
+        coefficients,
     }
 }
 
