@@ -86,7 +86,7 @@ fn air_balances_at_every_sample_of_a_run() {
 #[test]
 fn recorded_masses_are_those_of_the_recorded_pressures_and_stroke() {
     let job = scenario("plate_edge_ideal");
-    let parameters = job.device.parameters.clone();
+    let parameters = job.nominal.device.clone();
     let recording = run(job).recording;
     let values = |name| recording.values(name).unwrap();
     let stroke = values(schema::STROKE);

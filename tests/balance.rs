@@ -13,7 +13,7 @@ fn balance(scenario: Scenario) -> (f64, f64) {
     let finished = run(scenario);
     let recording = &finished.recording;
     let span = recording.phase("follow").unwrap();
-    let parameters = &cell.setup.scenario.device.parameters;
+    let parameters = &cell.setup.scenario.nominal.device;
     let areas = parameters.areas();
     let [force, p1, p2] = [
         schema::CONTACT_FORCE,
@@ -68,7 +68,7 @@ fn without_gravity_in_the_balance_it_does_not_close() {
     scenario.workpiece.edge.end = Some(scenario.workpiece.edge.start + 0.05);
     let weight = {
         let cell = Cell::new(scenario.clone()).unwrap();
-        cell.setup.scenario.device.parameters.moving_mass
+        cell.setup.scenario.nominal.device.moving_mass
             * cell.gravity_along(cell.plan.reference(5.0).axis)
     };
     let (measured, expected) = balance(scenario);

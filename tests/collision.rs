@@ -167,7 +167,7 @@ fn the_weight_of_the_tool_is_told_with_what_to_change() {
         scenario.process.tool_axis = Some(Direction(DVec3::NEG_Z));
         scenario.process.force = force;
         if let Some(mass) = mass {
-            scenario.device.parameters.moving_mass = mass;
+            scenario.nominal.device.moving_mass = mass;
         }
         scenario
     };

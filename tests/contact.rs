@@ -8,7 +8,9 @@ use idc_cell::arm::chain::{BodyInertia, Joint, JointKind, KinematicChain};
 use idc_cell::control::law::{DriveLimit, JointLaw};
 use idc_cell::device::{Device, DeviceParameters, DeviceState, PistonMotion};
 use idc_cell::physics::seal_friction::SealFriction;
-use idc_cell::plant::{CellParameters, PistonLoad, PlantParameters, Relief, RunningDevice, Touch};
+use idc_cell::plant::{
+    ContactParameters, PistonLoad, PlantParameters, Relief, RunningDevice, Touch,
+};
 use idc_cell::simulation::contact::ContactReading;
 use idc_cell::simulation::contact::ToolBall;
 use idc_cell::simulation::slide;
@@ -74,7 +76,7 @@ impl Press {
             tip_from_last: DPose3::IDENTITY,
         };
         let world = World::new(&WorldDescription {
-            chain: &chain,
+            chain,
             world_from_base: DPose3::from_parts(DVec3::new(0.0, 0.0, BALL + TOUCH), down),
             gravity: DVec3::new(0.0, 0.0, -GRAVITY),
             step: STEP,
@@ -96,11 +98,11 @@ impl Press {
         Self {
             state: device.at_rest(TOUCH, 0.0),
             world,
-            plant: PlantParameters::of_cell(
-                device.parameters().clone(),
-                (law.stiffness, law.damping),
-                CellParameters::RIGID,
-            ),
+            plant: PlantParameters {
+                device: device.parameters().clone(),
+                contact: ContactParameters::linear(law.stiffness, law.damping),
+                ..PlantParameters::default()
+            },
             device,
             relief: Relief::default(),
             touches: Vec::new(),

@@ -76,7 +76,7 @@ fn the_force_of_a_sliding_contact_flange_varies_as_it_was_recorded() {
         job.process.force = force;
         job.process.feed = feed;
         job.process.corner_feed = feed / 2.0;
-        let seals = &mut job.device.parameters.seal_friction;
+        let seals = &mut job.nominal.device.seal_friction;
         (seals.coulomb, seals.static_force) = (coulomb, coulomb);
         simulated(job)
     };

@@ -84,7 +84,7 @@ fn moving_surface() -> BenchScenario {
 }
 
 fn device() -> DeviceParameters {
-    moving_surface().device.parameters
+    moving_surface().nominal.0.device
 }
 
 fn record(bench: BenchScenario) -> Recording {
@@ -206,7 +206,7 @@ fn a_step_of_the_desired_force_settles_no_sooner_than_the_regulator_can() {
 /// The job of a misplaced part with the seals and sensors of the moved surface: errors from first touch and while following.
 fn misplaced(law: ForceLaw) -> [Errors; 2] {
     let (mut cell, bench) = (scenario("misplaced_part"), moving_surface());
-    cell.device.parameters.seal_friction = bench.device.parameters.seal_friction;
+    cell.nominal.device.seal_friction = bench.nominal.device.seal_friction;
     cell.sensing = bench.sensing;
     cell.sensing.sample_rate = 1e3;
     // The seals that stick and slip at 0.35 mm/s under the sensors' noise need it; the controller's period stays at 1 ms.

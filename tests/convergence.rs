@@ -90,7 +90,7 @@ fn a_bench_whose_law_is_smooth_converges_by_the_fourth_order() {
         frequency: 3.0,
         start: 0.0,
     });
-    let device = &mut scenario.device.parameters;
+    let device = &mut scenario.nominal.device;
     device.end_stop.stiffness = 1e4;
     device.end_stop.damping = 0.0;
     (device.supply_orifice, device.exhaust_orifice) = (0.0, 0.0);

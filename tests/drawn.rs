@@ -79,8 +79,8 @@ fn the_ball_that_is_drawn_rides_on_the_edge_and_links_hang_on_their_joints() {
     let ball = shapes.next().unwrap().shapes.len();
     let (centre, _) = poses(&store, &format!("/cell/device/slide/part_{ball}"))[0];
     let follow = run.recording.phase("follow").unwrap();
-    let radius = cell.setup.scenario.device.tool_radius;
-    let stiffness = cell.setup.scenario.contact.stiffness;
+    let radius = cell.setup.scenario.nominal.mounting.tool_radius;
+    let stiffness = cell.setup.scenario.nominal.contact.stiffness_at(0.0);
     let mut seen = 0;
     for (frame, time) in scene.frame_times.iter().enumerate() {
         if *time > follow.start && *time < follow.end {
@@ -199,7 +199,7 @@ fn what_is_checked_for_collisions_is_where_the_links_and_obstacles_are() {
     // The spindle ends at the ball's centre.
     let end = corners.iter().map(|corner| corner.z).fold(0.0, f64::max);
     assert!(
-        (end - cell.setup.scenario.device.tool_centre).abs() < 1e-6,
+        (end - cell.setup.scenario.nominal.mounting.tool_centre).abs() < 1e-6,
         "{end}"
     );
     let (corners, frame) = mesh(&store, "/cell/collision/tool\\ rack");

@@ -8,6 +8,7 @@ use idc_cell::arm::chain::MAX_JOINTS;
 use idc_cell::arm::dynamics::inverse_dynamics;
 use idc_cell::arm::kinematics::link_poses;
 use idc_cell::cell::{Cell, CellError};
+use idc_cell::plant::ContactLaw;
 use idc_cell::recording::schema::{self, JointSignal, joint_quantity};
 use idc_cell::run::{FinishedCell, run_cell};
 use idc_cell::scenario::{LimitOverride, Scenario};
@@ -120,8 +121,8 @@ fn no_drive_gives_more_than_its_limit_and_a_run_at_it_says_so() {
 fn the_housing_hangs_on_the_flange_and_loads_every_joint_by_its_lever() {
     let torques = |housing: f64| {
         let mut loaded = short();
-        loaded.device.housing_mass = housing;
-        loaded.device.housing_centre_of_mass = 0.06;
+        loaded.nominal.mounting.housing_mass = housing;
+        loaded.nominal.mounting.housing_centre_of_mass = 0.06;
         let cell = Cell::new(loaded).unwrap();
         let count = cell.setup.arm_with_slide.len();
         let mut position = cell.plan.reference(0.0).position;
@@ -170,8 +171,8 @@ fn the_housing_hangs_on_the_flange_and_loads_every_joint_by_its_lever() {
 fn a_device_heavier_than_the_arm_may_carry_is_refused_and_one_as_heavy_is_not() {
     let with = |payload| {
         let mut scenario = short();
-        scenario.device.housing_mass = 2.0;
-        scenario.device.parameters.moving_mass = 4.0;
+        scenario.nominal.mounting.housing_mass = 2.0;
+        scenario.nominal.device.moving_mass = 4.0;
         scenario.arm.payload = Some(payload);
         Cell::new(scenario)
     };
@@ -194,7 +195,7 @@ fn a_device_heavier_than_the_arm_may_carry_is_refused_and_one_as_heavy_is_not() 
 /// Largest force at the touch [N].
 fn peak(stiffness: f64, step: f64) -> f64 {
     let mut stiff = short();
-    stiff.contact.stiffness = stiffness;
+    stiff.nominal.contact.law = ContactLaw::Linear { stiffness };
     stiff.workpiece.edge.end = Some(stiff.workpiece.edge.start + 2e-3);
     stiff.process.settle_time = 0.02;
     stiff.simulation.step = step;
@@ -218,15 +219,15 @@ fn the_peak_at_the_touch_does_not_depend_on_the_step() {
 #[test]
 fn a_contact_that_no_step_follows_is_refused_with_what_would_do() {
     let mut hard = short();
-    hard.device.parameters.moving_mass = 0.05;
-    hard.contact.damping = 1e6;
+    hard.nominal.device.moving_mass = 0.05;
+    hard.nominal.contact.damping = 1e6;
     let Err(refused) = Cell::new(hard.clone()) else {
         panic!("a contact of 20 MHz was taken");
     };
     let CellError::Unresolved { most_damping, .. } = refused else {
         panic!("{refused}");
     };
-    hard.contact.damping = 0.99 * most_damping;
+    hard.nominal.contact.damping = 0.99 * most_damping;
     let taken = Cell::new(hard);
     assert!(!matches!(taken, Err(CellError::Unresolved { .. })));
 }

@@ -78,7 +78,7 @@ fn score(scenario: BenchScenario) -> Score {
     else {
         panic!("the surface must move");
     };
-    let slides = 0.95 * scenario.device.parameters.seal_friction.coulomb;
+    let slides = 0.95 * scenario.nominal.device.seal_friction.coulomb;
     let (recording, stop) = Rig::new(scenario).unwrap().run(&mut |_| ()).unwrap();
     assert!(stop.is_none(), "{stop:?}");
     let channel = |name| recording.values(name).unwrap();
@@ -162,12 +162,12 @@ fn devices_off_their_data_within_the_usual_tolerances_are_covered() {
         let mut scenario = scenario(0.5, FIRST_SEED + 100 + index as u64);
         scenario.estimator = Some(believing(
             &scenario,
-            &scenario.device.parameters.clone(),
+            &scenario.nominal.device.clone(),
             limits,
         ));
         let [mass, supply, exhaust, dead_volume, friction, presliding] =
             spread(index, [11, 5, 3, 13, 2, 7]);
-        let device = &mut scenario.device.parameters;
+        let device = &mut scenario.nominal.device;
         device.moving_mass *= 1.0 + mass * limits.moving_mass;
         device.supply_orifice *= 1.0 + supply * limits.orifices;
         device.exhaust_orifice *= 1.0 + exhaust * limits.orifices;
@@ -191,7 +191,7 @@ fn devices_off_their_data_within_the_usual_tolerances_are_covered() {
 fn a_friction_believed_badly_wrong_is_not_covered() {
     for believed in [0.0, 5.0, 20.0] {
         let mut scenario = scenario(0.5, FIRST_SEED + 200);
-        let mut device = scenario.device.parameters.clone();
+        let mut device = scenario.nominal.device.clone();
         device.seal_friction.coulomb = believed;
         device.seal_friction.static_force = believed;
         scenario.estimator = Some(believing(&scenario, &device, Tolerances::NONE));

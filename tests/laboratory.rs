@@ -13,8 +13,7 @@ use idc_cell::physics::regulator::{RateLimit, RegulatorParameters, SecondOrder};
 use idc_cell::physics::seal_friction::SealFriction;
 use idc_cell::physics::supply_reservoir::SupplyReservoir;
 use idc_cell::plant::{
-    ContactLaw, ContactParameters, DeviceParts, InitialState, LinkParameters, Periodic,
-    PlantInputs, PlantParameters, SensorErrors, simulate,
+    ContactLaw, ContactParameters, InitialState, Periodic, PlantInputs, PlantParameters, simulate,
 };
 use rand::{Rng, SeedableRng};
 use rand_distr::StandardNormal;
@@ -52,22 +51,8 @@ pub fn plant_of(rig: &LaboratoryRig) -> PlantParameters {
             ..DeviceParameters::default()
         },
         gravity_along_extension: rig.gravity,
-        contact: ContactParameters {
-            law: ContactLaw::Linear {
-                stiffness: rig.contact_stiffness,
-            },
-            damping: rig.contact_damping,
-            surface_offset: 0.0,
-            spindle_frequency: 0.0,
-            runout: Periodic::NONE,
-            waviness: Periodic::NONE,
-        },
-        sensors: SensorErrors::NONE,
-        latent: None,
-        own: Vec::new(),
-        parts: DeviceParts::Whole,
-        links: LinkParameters::NONE,
-        cell: idc_cell::plant::CellParameters::RIGID,
+        contact: ContactParameters::linear(rig.contact_stiffness, rig.contact_damping),
+        ..PlantParameters::default()
     }
 }
 

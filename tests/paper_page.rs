@@ -111,7 +111,7 @@ fn the_six_figures_in_numbers() {
         ("9 to 11, sensed", "paper_stairstep_sensed"),
     ] {
         let (scenario, finished) = run(name);
-        let area = scenario.device.parameters.areas().extending;
+        let area = scenario.nominal.device.areas().extending;
         for (level, (_, wanted)) in finished.summary.levels.iter().zip(scenario.command.steps()) {
             let force = level.force_mean_n.unwrap();
             let outlet = level.regulator_pressure_bar_gauge;
@@ -147,7 +147,7 @@ fn force_is_proportional_to_pressure_until_the_adc_is_full() {
     ])];
     let (_, ideal) = run("paper_stairstep");
     let (mut scenario, sensed) = run("paper_stairstep_sensed");
-    let area = scenario.device.parameters.areas().extending;
+    let area = scenario.nominal.device.areas().extending;
     let mut push = |what: &str, levels: usize, (slope, off): (f64, f64)| {
         rows.push(vec![
             what.to_owned(),

@@ -341,7 +341,7 @@ fn off_five_newtons(other: &str, controlled: bool) -> f64 {
     let off = turns.map(|turn| {
         let mut cell = scenario("plate_edge_ideal");
         cell.device = real.device.clone();
-        cell.contact = real.contact;
+        cell.nominal = real.nominal.clone();
         if controlled {
             cell.controller = real.controller.clone();
             cell.sensing = real.sensing;
@@ -349,7 +349,7 @@ fn off_five_newtons(other: &str, controlled: bool) -> f64 {
         // The tool comes down forwards, 45 degrees steep: turning gravity about the edge turns the whole cell about it.
         let gravity = cell.simulation.gravity;
         cell.simulation.gravity = glam::DQuat::from_rotation_y(turn.to_radians()) * gravity;
-        cell.device.parameters.opposing_pressure = 0.5e5;
+        cell.nominal.device.opposing_pressure = 0.5e5;
         cell.process.force = 5.0;
         cell.passes = vec![pass(5.0, 20e-3)];
         cell.expect.clear();
@@ -378,7 +378,7 @@ fn five_newtons_are_held_at_any_inclination_with_an_opposing_pressure() {
 // docs/EVIDENCE.md has the figures.
 #[test]
 fn seals_hold_back_up_to_their_breakaway_force_of_five_newtons_and_a_load_cell_takes_it_out() {
-    let seals = scenario("plate_edge").device.parameters.seal_friction;
+    let seals = scenario("plate_edge").nominal.device.seal_friction;
     assert_eq!(
         (seals.coulomb, seals.static_force, seals.viscous),
         (10.0, 14.0, 50.0)

@@ -62,7 +62,7 @@ struct Bench {
 /// The device of models/device.toml.
 fn usual() -> DeviceParameters {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenarios/paper_step.toml");
-    let mut parameters = load_bench(path.as_ref()).unwrap().device.parameters;
+    let mut parameters = load_bench(path.as_ref()).unwrap().nominal.0.device;
     parameters.regulator.time_constant = 0.15;
     parameters.regulator.dead_time = 0.02;
     parameters

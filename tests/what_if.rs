@@ -101,7 +101,7 @@ fn what_is_off_is_off_by_as_much_as_was_said() {
     assert!((stroke(&moved) - stroke(&nominal) + 8e-4).abs() < 1e-6);
     // A heavier slide presses with its weight, of which the controller knows nothing.
     let scenario = idc_cell::scenario::load(&bench.path("scenario.toml")).unwrap();
-    let heavier = scenario.device.parameters.moving_mass + 1.0;
+    let heavier = scenario.nominal.device.moving_mass + 1.0;
     let with = format!("moving_mass_error:mass_kg={heavier}");
     let heavy = samples(&bench, "scenario.toml", &[&with]);
     let more = mean(&heavy, "contact_force") - mean(&nominal, "contact_force");

@@ -7,7 +7,7 @@ use std::path::Path;
 use idc_cell::device::{Device, DeviceState, PistonMotion};
 use idc_cell::physics::push_only::PushOnly;
 use idc_cell::physics::valve::ValvePosition;
-use idc_cell::plant::{ContactLaw, ContactParameters};
+use idc_cell::plant::{Actual, ContactLaw, PlantParameters};
 use idc_cell::rig::load_at;
 use idc_cell::scenario::bench::{BenchScenario, CommandScenario, LoadScenario};
 use idc_cell::scenario::load_bench;
@@ -30,6 +30,8 @@ pub struct Case {
     pub name: &'static str,
     /// The scenario.
     pub scenario: BenchScenario,
+    /// The same physics, as it is.
+    actual: Actual<PlantParameters>,
     /// Its device.
     pub device: Device,
     /// The same as plain equations.
@@ -62,7 +64,7 @@ impl Case {
     /// DOP853 stands for one.
     pub fn stiff(scenario: &str) -> Result<Self, Box<dyn Error>> {
         let mut scenario = load_bench(&project(scenario))?;
-        let parameters = &mut scenario.device.parameters;
+        let parameters = &mut scenario.nominal.device;
         parameters.dead_volume = 3e-7;
         parameters.supply_orifice = 5e-6;
         parameters.exhaust_orifice = 5e-6;
@@ -88,25 +90,19 @@ impl Case {
     }
 
     fn of(name: &'static str, scenario: BenchScenario) -> Result<Self, Box<dyn Error>> {
-        let parameters = &scenario.device.parameters;
+        let parameters = &scenario.nominal.device;
         let load = match scenario.load {
             LoadScenario::Free => None,
-            LoadScenario::Contact {
-                position,
-                contact:
-                    ContactParameters {
-                        law: ContactLaw::Linear { stiffness },
-                        damping,
-                        ..
-                    },
-                ..
-            } => Some((position, PushOnly { stiffness, damping })),
-            LoadScenario::Contact { .. } => {
-                return Err(format!("{name} must press on a spring").into());
+            LoadScenario::Contact { position, .. } => {
+                let ContactLaw::Linear { stiffness } = scenario.nominal.contact.law else {
+                    return Err(format!("{name} must press on a spring").into());
+                };
+                let damping = scenario.nominal.contact.damping;
+                Some((position, PushOnly { stiffness, damping }))
             }
         };
         let device = Device::new(parameters.clone());
-        let model = Model::new(parameters, scenario.gravity_along_extension, load);
+        let model = Model::new(parameters, scenario.nominal.gravity_along_extension, load);
         let regulator = &parameters.regulator;
         let CommandScenario::SetPressure(commands) = &scenario.command else {
             return Err(format!("{name} must command pressures").into());
@@ -121,7 +117,7 @@ impl Case {
             valve: scenario.valve.clone(),
             end: scenario.duration,
         };
-        let weight = parameters.moving_mass * scenario.gravity_along_extension;
+        let weight = parameters.moving_mass * scenario.nominal.gravity_along_extension;
         let motion = PistonMotion {
             stroke: weight.min(0.0) / parameters.end_stop.stiffness,
             speed: 0.0,
@@ -133,6 +129,7 @@ impl Case {
             device,
             model,
             timetable,
+            actual: scenario.nominal.with(|_| ()),
             scenario,
             times: Vec::new(),
             golden: Vec::new(),
@@ -180,7 +177,7 @@ impl Case {
             .rev()
             .find(|v| v.0 <= time + 1e-9);
         state.valve = valve.map_or(ValvePosition::Extend, |v| v.1);
-        let load = load_at(&self.scenario, time);
+        let load = load_at(&self.scenario, &self.actual, time);
         let device = &self.device;
         if audited {
             device.advance_loaded::<_, true>(state, motion, set_pressure, &load, STEP, substeps);

@@ -165,7 +165,7 @@ pub fn holding_world(cell: &Cell, lift: f64) -> Holding {
         })
         .collect();
     let slide = if lift > 0.0 {
-        let stiffness = scenario.device.parameters.lock_stiffness;
+        let stiffness = scenario.nominal.device.lock_stiffness;
         JointLaw {
             force: 0.0,
             stiffness,
@@ -179,7 +179,7 @@ pub fn holding_world(cell: &Cell, lift: f64) -> Holding {
     let mut holding = Holding {
         world,
         laws,
-        contact: cell.setup.plant.contact,
+        contact: cell.setup.actual.contact,
         touches: Vec::new(),
         pressed: Vec::new(),
     };

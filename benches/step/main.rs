@@ -175,7 +175,7 @@ fn print_peer(cell: &Cell, rounds: &mut Rounds, peer: &Peer, last: Option<&peer:
         ready.static_force,
         (ready.static_force / desired - 1.0) * 100.0,
         ready.penetration * 1e3,
-        desired / cell.setup.scenario.contact.stiffness * 1e3,
+        desired / cell.setup.scenario.nominal.contact.stiffness_at(desired) * 1e3,
     );
     if let Some(round) = last {
         println!(

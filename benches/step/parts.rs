@@ -126,7 +126,7 @@ fn path_and_servo(criterion: &mut Criterion, cell: &Cell) {
 
 fn contact_search(criterion: &mut Criterion, cell: &Cell) {
     let surface = ContactSurface::new(&cell.setup.part.mesh_in_world);
-    let reach = cell.setup.scenario.device.tool_radius + 1e-3;
+    let reach = cell.setup.scenario.nominal.mounting.tool_radius + 1e-3;
     let (start, end) = follow_span(cell);
     let step = cell.setup.scenario.simulation.step;
     // Places along the path, so that it is not always the same triangles.

@@ -116,7 +116,7 @@ fn reply<T: for<'a> Deserialize<'a>>(replies: &mut BufReader<ChildStdout>) -> Re
 /// The cell in the arm's base frame, as mujoco_peer.py reads it.
 fn scene(cell: &Cell, steps: usize) -> Result<Value, String> {
     let scenario = &cell.setup.scenario;
-    let device = &scenario.device;
+    let nominal = &scenario.nominal;
     let base_from_world = scenario.arm.world_from_base.inverse();
     let (low, high) = cell.setup.part.mesh.bounds();
     let box_volume = (high - low).element_product();
@@ -125,7 +125,7 @@ fn scene(cell: &Cell, steps: usize) -> Result<Value, String> {
     }
     let base_from_part = base_from_world * cell.setup.part.world_from_part;
     let turned = base_from_part.rotation;
-    let mass = device.parameters.moving_mass;
+    let mass = nominal.nominal.mounting.moving_mass;
     let gains = servo_gains(cell);
     let follow = follow_span(cell).0;
     let step = scenario.simulation.step;
@@ -144,10 +144,10 @@ fn scene(cell: &Cell, steps: usize) -> Result<Value, String> {
         "gravity": list(base_from_world.rotation * scenario.simulation.gravity),
         "device": {
             "mass": mass,
-            "centre_of_mass": device.moving_centre_of_mass,
-            "inertia": mass * device.moving_radius_of_gyration.powi(2),
-            "ball_centre": device.tool_centre,
-            "ball_radius": device.tool_radius,
+            "centre_of_mass": nominal.mounting.moving_centre_of_mass,
+            "inertia": mass * nominal.mounting.moving_radius_of_gyration.powi(2),
+            "ball_centre": nominal.mounting.tool_centre,
+            "ball_radius": nominal.mounting.tool_radius,
         },
         "part": {
             "centre": list(base_from_part.transform_point((low + high) / 2.0)),
@@ -155,9 +155,9 @@ fn scene(cell: &Cell, steps: usize) -> Result<Value, String> {
             "rotation": [turned.w, turned.x, turned.y, turned.z],
         },
         "contact": {
-            "stiffness": scenario.contact.stiffness,
-            "damping": scenario.contact.damping,
-            "friction": scenario.contact.friction,
+            "stiffness": nominal.contact.stiffness_at(0.0),
+            "damping": nominal.contact.damping,
+            "friction": nominal.cell.friction,
         },
         "servo": {
             "stiffness": gains.iter().map(|gain| gain.0).collect::<Vec<_>>(),

@@ -49,7 +49,7 @@ pub(super) fn remedy(
     scenario: &Scenario,
     refusal: &CellError,
 ) -> Option<Remedy> {
-    let parameters = &scenario.device.parameters;
+    let parameters = &scenario.nominal.device;
     match kind {
         Kind::Feed => feed(trial, scenario, refusal),
         Kind::Acceleration => acceleration(trial, scenario),
@@ -101,7 +101,7 @@ pub(super) fn remedy(
 /// Force that the seals may hold back of what a controller without a load cell sets [N]; one with a load cell takes it out.
 pub(super) fn held_back(scenario: &Scenario) -> f64 {
     match scenario.controller.law {
-        ForceLaw::OpenLoop => scenario.device.parameters.seal_friction.static_force,
+        ForceLaw::OpenLoop => scenario.nominal.device.seal_friction.static_force,
         _ => 0.0,
     }
 }
@@ -184,7 +184,7 @@ fn weight(
     else {
         return None;
     };
-    let parameters = &scenario.device.parameters;
+    let parameters = &scenario.nominal.device;
     let friction = parameters.seal_friction.static_force;
     if kind == Kind::Mass {
         // By the share that the tool's axis has of gravity the force along it is most_mass times that.
@@ -225,7 +225,7 @@ fn supply(
         return single(trial, kind, "a higher supply pressure", key, &tried);
     }
     // The force grows with the square of the bore.
-    let least = 1e3 * scenario.device.parameters.bore * (needed / supply).sqrt();
+    let least = 1e3 * scenario.nominal.device.bore * (needed / supply).sqrt();
     let tried: Vec<f64> = MORE
         .map(|times| (times * least).ceil())
         .into_iter()
@@ -241,7 +241,7 @@ fn supply(
 }
 
 fn working_stroke(trial: &Trial<'_>, scenario: &Scenario, refusal: &CellError) -> Option<Remedy> {
-    let full = 1e3 * scenario.device.parameters.full_stroke;
+    let full = 1e3 * scenario.nominal.device.full_stroke;
     let tenth = |value: f64| (10.0 * value).round() / 10.0;
     let CellError::ShiftBeyondStroke { from, to, .. } = refusal else {
         return None;
@@ -262,7 +262,7 @@ fn working_stroke(trial: &Trial<'_>, scenario: &Scenario, refusal: &CellError) -
 }
 
 fn ball(trial: &Trial<'_>, scenario: &Scenario, refusal: &CellError) -> Option<Remedy> {
-    let own = 1e3 * scenario.device.tool_radius;
+    let own = 1e3 * scenario.nominal.mounting.tool_radius;
     let tried = match refusal {
         CellError::BallTooLarge { largest, .. } => {
             [0.97, 0.9, 0.8, 0.65].map(|share| 1e3 * share * largest)

@@ -152,7 +152,7 @@ pub(super) fn stretch(
         return first(trial, Kind::Stretch, words, tried.to_vec(), friction);
     }
     let setup = setup?;
-    let radius = scenario.device.tool_radius;
+    let radius = scenario.nominal.mounting.tool_radius;
     let (from, to) = longest(&largest_balls(&setup.part, radius), radius)?;
     let tried = [0.0, 0.5, 1.0, 2.0].into_iter().filter_map(|share| {
         // The ends of what is followed anyway stay where they are.

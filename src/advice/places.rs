@@ -204,8 +204,9 @@ fn middle(setup: &Setup, world_from_part: DPose3) -> DVec3 {
 /// Whether no point of the edge is farther from the arm than arm and device are long.
 fn may_reach(setup: &Setup, stance: &Stance) -> bool {
     const LOOKS: usize = 8;
-    let device = &setup.scenario.device;
-    let tool = device.tool_centre + device.parameters.full_stroke + device.tool_radius;
+    let nominal = &setup.scenario.nominal;
+    let mounting = &nominal.mounting;
+    let tool = mounting.tool_centre + nominal.device.full_stroke + mounting.tool_radius;
     let first = setup.arm.chain.joints.first();
     let shoulder = first.map_or(DVec3::ZERO, |joint| joint.parent_from_joint.translation);
     let shoulder = setup.scenario.arm.world_from_base.transform_point(shoulder);

@@ -86,7 +86,7 @@ pub(super) fn figures(
     scenario: &BenchScenario,
     recording: &Recording,
 ) -> Result<String, FigureError> {
-    let atmosphere = scenario.device.parameters.gas.atmosphere;
+    let atmosphere = scenario.nominal.device.gas.atmosphere;
     let last = recording.time().last().copied().unwrap_or(0.0);
     let events = events(scenario, last);
     let bare: Vec<Marker> = events

@@ -38,13 +38,13 @@ pub(super) fn scene_of(
             frames.push(index);
         }
     }
-    let mount = mount(scenario.gravity_along_extension);
+    let mount = mount(scenario.nominal.gravity_along_extension);
     let along = |length: f64| mount * DPose3::from_translation(DVec3::new(0.0, 0.0, length));
-    let device = &scenario.device;
-    let tip = device.tool_centre + device.tool_radius;
+    let nominal = &scenario.nominal;
+    let tip = nominal.mounting.tool_centre + nominal.mounting.tool_radius;
     let slide = frames.iter().map(|&i| along(stroke[i])).collect();
     let mut bodies = Vec::from(device_bodies(
-        device,
+        nominal,
         ScenePoses::Static(mount),
         ScenePoses::Moving(slide),
     ));
@@ -77,7 +77,7 @@ pub(super) fn scene_of(
             })
             .collect(),
         limits: SceneLimits {
-            stroke: Some([0.0, device.parameters.full_stroke]),
+            stroke: Some([0.0, nominal.device.full_stroke]),
             joint_torque: Vec::new(),
         },
     })

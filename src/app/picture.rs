@@ -8,9 +8,9 @@ use crate::cell::{Cell, DeviceShape};
 use crate::collision::{Body, Mount, Role};
 use crate::drawing::{CrossSection, cross_section};
 use crate::path::{Phase, Reference};
+use crate::plant::{Nominal, PlantParameters};
 use crate::recording::csv::EdgeProfile;
 use crate::recording::{Recording, RecordingError, schema};
-use crate::scenario::DeviceScenario;
 use crate::scene::colour::Colour;
 use crate::scene::finished_edge::FinishedEdge;
 use crate::scene::{
@@ -68,7 +68,7 @@ pub(super) fn motion_of(cell: &Cell, frames: &FrameLog) -> Scene {
             })
             .collect(),
         limits: SceneLimits {
-            stroke: Some([0.0, cell.setup.scenario.device.parameters.full_stroke]),
+            stroke: Some([0.0, cell.setup.scenario.nominal.device.full_stroke]),
             joint_torque: cell
                 .setup
                 .arm
@@ -139,7 +139,7 @@ fn device(cell: &Cell, frames: &FrameLog) -> [SceneBody; 2] {
     let last = cell.setup.arm.chain.len() - 1;
     let flange = |links: &Vec<DPose3>| links[last] * cell.setup.arm.chain.tip_from_last;
     device_bodies(
-        &cell.setup.scenario.device,
+        &cell.setup.scenario.nominal,
         ScenePoses::Moving(frames.links.iter().map(flange).collect()),
         ScenePoses::Moving(frames.links.iter().map(|links| links[last + 1]).collect()),
     )
@@ -147,11 +147,11 @@ fn device(cell: &Cell, frames: &FrameLog) -> [SceneBody; 2] {
 
 /// The device to its own measures: cylinders on the flange, carriage, spindle and ball nose on the slide.
 pub(super) fn device_bodies(
-    scenario: &DeviceScenario,
+    nominal: &Nominal<PlantParameters>,
     world_from_flange: ScenePoses,
     world_from_slide: ScenePoses,
 ) -> [SceneBody; 2] {
-    let shape = DeviceShape::of(scenario);
+    let shape = DeviceShape::of(nominal);
     let moving = shape.moving.iter().chain([&shape.ball]);
     [
         SceneBody {

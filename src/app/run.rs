@@ -10,7 +10,7 @@ mod table;
 mod variants;
 
 pub(super) use cell_run::{Listener, RunPart};
-pub(super) use command::{RunArguments, put_in};
+pub(super) use command::{RunArguments, nominal_of, put_in};
 pub(super) use numbers::{Numbers, can_run, metric_names, numbers};
 pub(super) use settings::blamed;
 pub(super) use source::Source;

@@ -40,7 +40,7 @@ pub(super) fn arm_prediction(
             });
             root_mean_square(departures)
         };
-        let sizes = [cell.scenario.servo_bandwidth, servo.bandwidth].map(of);
+        let sizes = [cell.scenario.nominal.cell.servo_bandwidth, servo.bandwidth].map(of);
         if let [Some(before), Some(after)] = sizes {
             let noise = cell.scenario.joint_noise;
             errors.push(error("joints_rad".to_owned(), before, after, Some(noise)));

@@ -89,7 +89,7 @@ fn read_one(cell: &LoadedCell, path: &Path) -> Result<CellRecording, CaseError> 
         return Ok(read_cell_csv(path, joints)?);
     }
     let scenario = &cell.scenario;
-    let atmosphere = scenario.device.parameters.gas.atmosphere;
+    let atmosphere = scenario.nominal.device.gas.atmosphere;
     let samples = read_table(path)?;
     let taken = cell_recording(&samples, joints, scenario.sample_rate, atmosphere);
     taken.map_err(|source| {
@@ -140,7 +140,7 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, CaseErr
         .iter()
         .map(|(_, _, recording)| axes(recording))
         .collect();
-    let (noise, bandwidth) = (scenario.joint_noise, scenario.servo_bandwidth);
+    let (noise, bandwidth) = (scenario.joint_noise, scenario.nominal.cell.servo_bandwidth);
     let servo = if scenario.observed.motors_by_encoders {
         let own = scenario.arm.servo.natural_frequency;
         pushed_servo_link(&axes, noise, bandwidth, own)
@@ -152,7 +152,7 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, CaseErr
     let shown = servo.as_ref().and_then(|servo| servo.shown(&believed));
     let bandwidth = match (&servo, &shown) {
         (Some(servo), Some(_)) => servo.bandwidth,
-        _ => scenario.servo_bandwidth,
+        _ => scenario.nominal.cell.servo_bandwidth,
     };
     let frictions = frictions(cell, &known, &believed);
     let of_arm = unseen.as_ref().map(|(name, _, recording)| {
@@ -237,7 +237,7 @@ fn drives(cell: &LoadedCell, recording: &CellRecording) -> Vec<DriveLoad> {
         &recording.path,
         &recording.commands,
         Some(&recording.encoders),
-        cell.scenario.servo_bandwidth,
+        cell.scenario.nominal.cell.servo_bandwidth,
     );
     let drives = cell.drives(&trajectory, &recording.torques, stroke, force);
     let load = |drive: Drive| DriveLoad {
@@ -338,7 +338,7 @@ fn forget_what_friction_holds(
             .bisector
             .cross(trajectory.slide[i])
             .length();
-        if scenario.contact.friction * pressed * lean > noise {
+        if scenario.nominal.cell.friction * pressed * lean > noise {
             force[i] = f64::NAN;
         }
     }
@@ -411,10 +411,10 @@ fn tolerated_numbers(cell: &LoadedCell, believed: &PlantParameters) -> Vec<Free>
         let start = registry::START_STROKE.quantity();
         free.push(about(start, 0.5 * off, 0.5 * off / 3f64.sqrt(), [0.0, off]));
     }
-    let [time, deviation] = scenario.joint_damping;
-    // Joints that do not give have no damping to speak of.
-    if deviation > 0.0 && scenario.joint_stiffness.is_some() {
+    let deviation = scenario.joint_damping_deviation;
+    if deviation > 0.0 {
         let damping = registry::JOINT_DAMPING.quantity();
+        let time = damping.get(&scenario.nominal);
         let bounds = [0.1 * time, time + 4.0 * deviation];
         free.push(about(damping, time, deviation, bounds));
     }

@@ -60,7 +60,7 @@ fn arm(cell: &LoadedCell, read: &CellCase, diagnosis: &Diagnosis) -> Vec<String>
                     "Hz"
                 ),
                 if servo.differs() {
-                    format!("not {} Hz as believed", cell.scenario.servo_bandwidth)
+                    format!("not {} Hz as believed", cell.scenario.nominal.cell.servo_bandwidth)
                 } else {
                     "as believed".to_owned()
                 },

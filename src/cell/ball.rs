@@ -34,7 +34,7 @@ const TIMES: usize = 40;
 
 /// The ball must touch the edge, and nothing else of the part, all along.
 pub(super) fn check(scenario: &Scenario, part: &Part) -> Result<(), CellError> {
-    let radius = scenario.device.tool_radius;
+    let radius = scenario.nominal.mounting.tool_radius;
     let tightest = largest_balls(part, radius)
         .into_iter()
         .min_by(|a, b| a.1.total_cmp(&b.1));

@@ -10,7 +10,8 @@ use crate::arm::{Arm, Visual, VisualShape};
 use crate::collision::{
     Body, CollisionModel, ModelError, ModelRequest, Mount, RiddenEdge, Role, Solid, SolidError,
 };
-use crate::scenario::{DeviceScenario, Obstacle, ObstacleShape, Scenario};
+use crate::plant::{Nominal, PlantParameters};
+use crate::scenario::{Obstacle, ObstacleShape, Scenario};
 use crate::workpiece::load_mesh;
 
 /// Size of the floor, far beyond any arm's reach, and its thickness [m].
@@ -30,7 +31,7 @@ pub(super) fn model(
     };
     let base = scenario.arm.world_from_base;
     let mut bodies = links(arm, base).map_err(refused)?;
-    bodies.extend(device(&scenario.device, arm).map_err(refused)?);
+    bodies.extend(device(&scenario.nominal, arm).map_err(refused)?);
     let world_from_part = scenario.workpiece.world_from_part;
     let surface = Solid::surface(&part.mesh).map_err(|source| {
         refused(ModelError::Solid {
@@ -43,8 +44,8 @@ pub(super) fn model(
         bodies.push((Role::Obstacle, body_of(obstacle, scenario, notes)?));
     }
     bodies.extend(floor(scenario, &bodies, notes));
-    let centre = glam::DVec3::new(0.0, 0.0, scenario.device.tool_centre);
-    let ball = (centre, scenario.device.tool_radius);
+    let centre = glam::DVec3::new(0.0, 0.0, scenario.nominal.mounting.tool_centre);
+    let ball = (centre, scenario.nominal.mounting.tool_radius);
     let model = CollisionModel::new(ModelRequest {
         chain: arm_with_slide,
         world_from_base: scenario.arm.world_from_base,
@@ -97,8 +98,8 @@ fn links(arm: &Arm, world_from_base: DPose3) -> Result<Vec<(Role, Body)>, ModelE
 }
 
 /// The device's cylinders, and its slide with the tool but for the ball nose.
-fn device(scenario: &DeviceScenario, arm: &Arm) -> Result<Vec<(Role, Body)>, ModelError> {
-    let shape = DeviceShape::of(scenario);
+fn device(nominal: &Nominal<PlantParameters>, arm: &Arm) -> Result<Vec<(Role, Body)>, ModelError> {
+    let shape = DeviceShape::of(nominal);
     let count = arm.chain.len();
     let flange = arm.chain.tip_from_last;
     let placed =

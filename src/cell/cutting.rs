@@ -50,7 +50,7 @@ pub(super) fn check(scenario: &Scenario, tool_path: &ToolPath) -> Result<(), Cel
                 let rate = removal.law.removal_rate(force, speed, area, 0.0);
                 (removal.cutting.tangential(rate, speed, force), rate)
             }
-            None => (scenario.contact.friction * force, 0.0),
+            None => (scenario.nominal.cell.friction * force, 0.0),
         };
         let torque = cutting * radius;
         if torque >= tool.spindle.stall_torque {

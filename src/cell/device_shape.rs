@@ -4,7 +4,7 @@ use glam::DVec3;
 use glamx::DPose3;
 
 use crate::arm::{Visual, VisualShape};
-use crate::scenario::DeviceScenario;
+use crate::plant::{Nominal, PlantParameters};
 
 type Colour = [u8; 4];
 const HOUSING: Colour = [70, 80, 92, 255];
@@ -47,11 +47,11 @@ fn plate(size: DVec3, middle: f64, colour: Colour) -> Visual {
 impl DeviceShape {
     /// The shapes of a device.
     #[must_use]
-    pub fn of(scenario: &DeviceScenario) -> Self {
-        let parameters = &scenario.parameters;
+    pub fn of(nominal: &Nominal<PlantParameters>) -> Self {
+        let (parameters, mounting) = (&nominal.device, &nominal.mounting);
         let barrel = 0.5 * parameters.bore + 0.004;
         let spacing = barrel + 0.028;
-        let length = parameters.full_stroke.min(0.6 * scenario.tool_centre);
+        let length = parameters.full_stroke.min(0.6 * mounting.tool_centre);
         let sides: &[f64] = if parameters.cylinder_count > 1 {
             &[-1.0, 1.0]
         } else {
@@ -80,7 +80,7 @@ impl DeviceShape {
             ));
         }
         let [radius, short] = SPINDLE;
-        let spindle_end = scenario.tool_centre - short;
+        let spindle_end = mounting.tool_centre - short;
         moving.push(along_z(
             radius,
             spindle_end - length,
@@ -89,19 +89,19 @@ impl DeviceShape {
             HOUSING,
         ));
         moving.push(along_z(
-            0.5 * scenario.tool_radius,
+            0.5 * mounting.tool_radius,
             short,
             0.0,
             spindle_end + 0.5 * short,
             TOOL,
         ));
         let ball = VisualShape::Sphere {
-            radius: scenario.tool_radius,
+            radius: mounting.tool_radius,
         };
         Self {
             fixed,
             moving,
-            ball: at(0.0, scenario.tool_centre, ball, CARRIAGE),
+            ball: at(0.0, mounting.tool_centre, ball, CARRIAGE),
         }
     }
 }

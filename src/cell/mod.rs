@@ -25,18 +25,18 @@ pub use error::CellError;
 pub use estimated::{EstimatedArm, EstimatedLink, EstimatedTorque};
 pub use part::{Part, choose_edge, station};
 pub use payload::{FlangeLoad, with_housing};
+pub use plant::complete;
 pub use resolution::Resolution;
 pub use setup::{Setup, Stance, arm_options};
 
 use crate::arm::chain::MAX_JOINTS;
 use crate::arm::kinematics::{jacobian_at, link_poses};
 use crate::collision::Meeting;
-use crate::control::force::ForceController;
+use crate::control::force::{ForceController, Pressing};
 use crate::device::Device;
 use crate::path::Plan;
-use crate::physics::push_only::PushOnly;
 use crate::plant::{EdgeStation, Relief};
-use crate::scenario::{Scenario, ScenarioError, load};
+use crate::scenario::{Scenario, load};
 
 /// A cell, ready to run.
 pub struct Cell {
@@ -75,7 +75,7 @@ impl Cell {
     /// Something is missing, refused or out of reach; the error names file, key or waypoint.
     pub fn new(scenario: Scenario) -> Result<Self, CellError> {
         let mut setup = Setup::load(scenario)?;
-        let resolution = Resolution::of(&setup.scenario, &setup.plant)?;
+        let resolution = Resolution::of(&setup.scenario, &setup.actual)?;
         if let Some(Meeting { names, depth, .. }) = setup.collision.standing().into_iter().next() {
             return Err(CellError::Standing {
                 file: setup.scenario.path.clone(),
@@ -91,16 +91,23 @@ impl Cell {
         let gravity_on_edge = supply::check(&setup.scenario, &setup.passes, &tool_path)?;
         cutting::check(&setup.scenario, &tool_path)?;
         let axial_share = tool_path.share(&tool_path.at(0.5 * tool_path.length()));
-        let controller = controller(&setup.scenario, axial_share)?;
+        let scenario = &setup.scenario;
+        let controller = ForceController::of_scenario(
+            &scenario.controller,
+            &scenario.nominal,
+            &scenario.sensing,
+            Some(Pressing {
+                force: scenario.process.force,
+                share: axial_share,
+            }),
+            scenario.simulation.step,
+        )?;
         let request = setup.request(&stance, &setup.collision, tool_path);
         let plan = Plan::new(&request).map_err(refused)?;
         let spread = setup.scenario.arm.mass_spread;
         let estimated = EstimatedArm::of(&setup.arm.estimated, spread, &request, &plan);
-        let device = Device::new(
-            setup
-                .plant
-                .with_friction_of_terms(setup.plant.device.clone()),
-        );
+        let actual = &setup.actual;
+        let device = Device::new(actual.with_friction_of_terms(actual.device.clone()));
         let notes = &mut setup.notes;
         notes.extend(estimated.as_ref().map(EstimatedArm::note));
         notes.extend(plan.notes.iter().cloned());
@@ -143,7 +150,7 @@ impl Cell {
     pub fn relief_ridden(&self, place: f64, ridden: Option<(f64, f64, f64)>) -> Relief {
         let world_from_part = self.setup.scenario.workpiece.world_from_part;
         let here = station(&self.setup.part.edge, world_from_part, place);
-        let mut relief = self.setup.plant.cell.relief(&self.middle, &here);
+        let mut relief = self.setup.actual.cell.relief(&self.middle, &here);
         if let Some((lift, slope, rate)) = ridden {
             relief.rate += rate;
             relief.height += lift;
@@ -169,19 +176,4 @@ impl Cell {
         let most = (0..count).max_by(|&a, &b| along(a).abs().total_cmp(&along(b).abs()));
         most.unwrap_or_default() + 1
     }
-}
-
-/// The controller against the contact as the slide feels it: of the normal's stiffness the share along the axis, twice.
-fn controller(scenario: &Scenario, axial_share: f64) -> Result<ForceController, ScenarioError> {
-    let share = axial_share.powi(2);
-    ForceController::of_scenario(
-        &scenario.controller,
-        &scenario.device.parameters,
-        &scenario.sensing,
-        Some(PushOnly {
-            stiffness: share * scenario.contact.stiffness,
-            damping: share * scenario.contact.damping,
-        }),
-        scenario.simulation.step,
-    )
 }

@@ -57,7 +57,7 @@ impl Part {
             source,
         };
         let burr = burr(&workpiece.burr).map_err(fault)?;
-        let ridden = |burr| ride(burr, scenario.device.tool_radius, edge.length);
+        let ridden = |burr| ride(burr, scenario.nominal.mounting.tool_radius, edge.length);
         let ride = burr.as_ref().map(ridden).transpose().map_err(fault)?;
         let edge_state = EdgeState::new(&edge, burr.as_ref(), workpiece.burr_root);
         Ok(Self {

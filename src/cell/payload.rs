@@ -6,18 +6,19 @@ use super::error::CellError;
 use crate::arm::chain::{BodyInertia, KinematicChain};
 use crate::arm::payload::of_maker;
 use crate::arm::urdf::Arm;
-use crate::scenario::{DeviceScenario, Scenario};
+use crate::plant::Mounting;
+use crate::scenario::Scenario;
 
 /// Standard gravity, by which a force is told as a mass [m/s2].
 const GRAVITY: f64 = 9.80665;
 
 /// The arm with the housing of a device on its flange, its mass without extent.
 #[must_use]
-pub fn with_housing(arm: &KinematicChain, device: &DeviceScenario) -> KinematicChain {
+pub fn with_housing(arm: &KinematicChain, mounting: &Mounting) -> KinematicChain {
     let mut chain = arm.clone();
     let housing = BodyInertia {
-        mass: device.housing_mass,
-        centre_of_mass: DVec3::Z * device.housing_centre_of_mass,
+        mass: mounting.housing_mass,
+        centre_of_mass: DVec3::Z * mounting.housing_centre_of_mass,
         inertia: DMat3::ZERO,
     };
     let tip = chain.tip_from_last;
@@ -53,8 +54,8 @@ impl FlangeLoad {
         let forces = scenario.passes.iter().filter_map(|pass| pass.force);
         let process = scenario.process.force;
         Self {
-            housing: scenario.device.housing_mass,
-            moving: scenario.device.parameters.moving_mass,
+            housing: scenario.nominal.mounting.housing_mass,
+            moving: scenario.nominal.device.moving_mass,
             force: forces.fold(process, f64::max),
             payload: given.or(maker),
         }

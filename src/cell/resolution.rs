@@ -5,7 +5,7 @@
 //! arm and slide find to each other.
 
 use super::error::CellError;
-use crate::plant::PlantParameters;
+use crate::plant::{Actual, PlantParameters};
 use crate::scenario::Scenario;
 
 /// Largest part of a step times the fastest rate of slide or servo [rad].
@@ -27,19 +27,22 @@ impl Resolution {
     ///
     /// # Errors
     /// A contact too fast for the shortest part.
-    pub(super) fn of(scenario: &Scenario, plant: &PlantParameters) -> Result<Self, CellError> {
+    pub(super) fn of(
+        scenario: &Scenario,
+        actual: &Actual<PlantParameters>,
+    ) -> Result<Self, CellError> {
         let step = scenario.simulation.step;
-        let mass = plant.device.moving_mass;
+        let mass = actual.device.moving_mass;
         let parts = |rate: f64| (step * rate / LARGEST_SWING - 1e-9).ceil().max(1.0);
-        let stop = plant.device.end_stop;
+        let stop = actual.device.end_stop;
         let stop = (stop.stiffness / mass).sqrt().max(stop.damping / mass);
-        let slide = plant.contact.rate(mass).max(stop);
+        let slide = actual.contact.rate(mass).max(stop);
         if slide * SHORTEST > LARGEST_SWING {
             let most = LARGEST_SWING / SHORTEST;
             return Err(CellError::Unresolved {
                 file: scenario.path.clone(),
-                stiffness: scenario.contact.stiffness,
-                damping: scenario.contact.damping,
+                stiffness: scenario.nominal.contact.stiffness_at(0.0),
+                damping: scenario.nominal.contact.damping,
                 mass,
                 most_stiffness: mass * most * most,
                 most_damping: mass * most,

@@ -12,10 +12,10 @@ use super::supply;
 use crate::arm::chain::{BodyInertia, Joint, JointKind, KinematicChain};
 use crate::arm::urdf::{Arm, ArmOptions, LimitOverride, load_arm};
 use crate::collision::CollisionModel;
+use crate::effects::actual;
 use crate::path::profile::MotionLimits;
 use crate::path::{Outline, Pass, Plan, PlanError, PlanRequest, ToolAxis, ToolPath};
-use crate::physics::joint_spring::JointSpring;
-use crate::plant::PlantParameters;
+use crate::plant::{Actual, PlantParameters};
 use crate::scenario::{ArmScenario, PassScenario, Scenario};
 
 /// Arm, device and part of a scenario.
@@ -24,14 +24,10 @@ pub struct Setup {
     pub scenario: Scenario,
     /// The arm.
     pub arm: Arm,
-    /// The arm with the device's slide as its last joint, as its controller believes it to be.
+    /// The nominal arm with the device's slide as its last joint.
     pub arm_with_slide: KinematicChain,
-    /// The same as it is.
-    pub bodies: KinematicChain,
-    /// Transmission between motor and link of each of its joints, base first; none where they are one.
-    pub transmissions: Vec<Option<JointSpring>>,
-    /// Its physics.
-    pub plant: PlantParameters,
+    /// Its physics as it is.
+    pub actual: Actual<PlantParameters>,
     /// Part, edge and burr.
     pub part: Part,
     /// What must not meet, the part where it is believed to be.
@@ -58,20 +54,20 @@ impl Setup {
     ///
     /// # Errors
     /// Something is missing or refused; the error names file and key.
-    pub fn load(scenario: Scenario) -> Result<Self, CellError> {
+    pub fn load(mut scenario: Scenario) -> Result<Self, CellError> {
         let mut arm = load_arm(&scenario.arm.urdf, &arm_options(&scenario.arm))?;
         check_drives(&scenario, &arm.chain)?;
-        let plant = plant::of(&scenario, &arm.chain)?;
-        for (joint, friction) in arm.chain.joints.iter_mut().zip(plant.cell.joint_friction) {
+        plant::complete(&mut scenario.nominal, &scenario.arm, &arm.chain);
+        let actual = actual(&scenario.nominal, &scenario.effects);
+        plant::check(&scenario, &arm.chain, &actual)?;
+        let frictions = scenario.nominal.cell.joint_friction;
+        for (joint, friction) in arm.chain.joints.iter_mut().zip(frictions) {
             joint.friction = friction;
         }
-        let transmissions = plant::transmissions(&scenario, &arm.chain, &plant.cell);
         check_seed_posture(&scenario, &arm.chain)?;
         let flange = FlangeLoad::of(&scenario, &arm);
         flange.check(&scenario)?;
-        let believed_mass = scenario.device.parameters.moving_mass;
-        let arm_with_slide = with_slide(&arm.chain, &scenario, believed_mass);
-        let bodies = with_slide(&arm.chain, &scenario, plant.device.moving_mass);
+        let arm_with_slide = with_slide(&arm.chain, &scenario.nominal);
         let part = Part::load(&scenario)?;
         let mut notes = std::mem::take(&mut arm.notes);
         let mesh = scenario.workpiece.mesh.display();
@@ -88,13 +84,17 @@ impl Setup {
             scenario,
             arm,
             arm_with_slide,
-            bodies,
-            transmissions,
-            plant,
+            actual,
             part,
             collision,
             notes,
         })
+    }
+
+    /// The arm with the device's slide as it is.
+    #[must_use]
+    pub fn bodies(&self) -> KinematicChain {
+        with_slide(&self.arm.chain, &self.actual)
     }
 
     /// How part and tool stand by the scenario.
@@ -168,12 +168,12 @@ impl Setup {
         tool_path: ToolPath,
     ) -> PlanRequest<'a> {
         let scenario = &self.scenario;
-        let (process, device) = (&scenario.process, &scenario.device);
+        let (process, nominal) = (&scenario.process, &scenario.nominal);
         // A free slide stands at its outer end until the tool touches; a locked one does not move.
-        let push_back = if device.locked {
+        let push_back = if scenario.device.locked {
             0.0
         } else {
-            device.parameters.full_stroke - process.working_stroke
+            nominal.device.full_stroke - process.working_stroke
         };
         PlanRequest {
             arm: &self.arm.chain,
@@ -181,9 +181,9 @@ impl Setup {
             world_from_base: scenario.arm.world_from_base,
             gravity: scenario.simulation.gravity,
             tool_path,
-            tool_distance: device.tool_centre + process.working_stroke,
-            tool_radius: device.tool_radius,
-            penetration: process.force / scenario.contact.stiffness,
+            tool_distance: nominal.mounting.tool_centre + process.working_stroke,
+            tool_radius: nominal.mounting.tool_radius,
+            penetration: process.force / nominal.contact.stiffness_at(process.force),
             working_stroke: process.working_stroke,
             push_back,
             force: self
@@ -191,7 +191,7 @@ impl Setup {
                 .iter()
                 .map(|pass| pass.force)
                 .fold(0.0, f64::max),
-            friction: scenario.contact.friction,
+            friction: nominal.cell.friction,
             passes: &self.passes,
             corner_feed: process.corner_feed,
             lateral_acceleration: process.lateral_acceleration,
@@ -248,29 +248,29 @@ fn check_seed_posture(scenario: &Scenario, arm: &KinematicChain) -> Result<(), C
     }
 }
 
-/// The arm's chain with the device's housing on its flange and its moving part, of a mass [kg], on a prismatic joint along the flange's z.
-fn with_slide(arm: &KinematicChain, scenario: &Scenario, mass: f64) -> KinematicChain {
-    let device = &scenario.device;
-    let gyration = device.moving_radius_of_gyration;
-    let mut chain = with_housing(arm, device);
+/// The arm's chain with the device's housing on its flange and its moving part on a prismatic joint along the flange's z.
+fn with_slide(arm: &KinematicChain, plant: &PlantParameters) -> KinematicChain {
+    let (mounting, mass) = (&plant.mounting, plant.device.moving_mass);
+    let gyration = mounting.moving_radius_of_gyration;
+    let mut chain = with_housing(arm, mounting);
     chain.joints.push(Joint {
         name: "device_slide".into(),
         kind: JointKind::Prismatic,
         parent_from_joint: arm.tip_from_last,
         axis: DVec3::Z,
         lower: 0.0,
-        upper: device.parameters.full_stroke,
+        upper: plant.device.full_stroke,
         effort: f64::INFINITY,
         velocity: f64::INFINITY,
         damping: 0.0,
         friction: 0.0,
         body: BodyInertia {
             mass,
-            centre_of_mass: DVec3::new(0.0, 0.0, device.moving_centre_of_mass),
+            centre_of_mass: DVec3::new(0.0, 0.0, mounting.moving_centre_of_mass),
             inertia: DMat3::from_diagonal(DVec3::splat(mass * gyration * gyration)),
         },
     });
-    chain.tip_from_last = DPose3::from_translation(DVec3::new(0.0, 0.0, device.tool_centre));
+    chain.tip_from_last = DPose3::from_translation(DVec3::new(0.0, 0.0, mounting.tool_centre));
     chain
 }
 

@@ -25,7 +25,7 @@ pub(super) fn check(scenario: &Scenario, part: &Part, path: &ToolPath) -> Result
         let stroke = scenario.process.working_stroke - nearer;
         range = [range[0].min(stroke), range[1].max(stroke)];
     }
-    let full_stroke = scenario.device.parameters.full_stroke;
+    let full_stroke = scenario.nominal.device.full_stroke;
     if range[0] > 0.0 && range[1] < full_stroke {
         return Ok(());
     }

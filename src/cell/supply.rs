@@ -13,8 +13,8 @@ pub(super) fn check(
     tool_path: &ToolPath,
 ) -> Result<[f64; 2], CellError> {
     let mut range = [f64::INFINITY, f64::NEG_INFINITY];
-    let map = PressureMap::new(&scenario.device.parameters);
-    let device = &scenario.device.parameters;
+    let map = PressureMap::new(&scenario.nominal.device);
+    let device = &scenario.nominal.device;
     let (supply, giver) = attainable_set_pressure(device, &scenario.sensing.command);
     let length = tool_path.length();
     let count = (length / 5e-3).ceil().max(1.0) as usize;

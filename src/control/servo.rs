@@ -60,13 +60,19 @@ pub struct AxisCommand {
 }
 
 impl Servo {
-    /// A servo for the axes of `arm` with their own inertias [kg m2].
-    pub fn new(arm: &KinematicChain, inertias: &[f64], parameters: &ServoParameters) -> Self {
+    /// A servo for the axes of `arm` with their own dry frictions [N m] and inertias [kg m2].
+    pub fn new(
+        arm: &KinematicChain,
+        frictions: &[f64],
+        inertias: &[f64],
+        parameters: &ServoParameters,
+    ) -> Self {
         let gains = arm
             .joints
             .iter()
+            .zip(frictions)
             .zip(inertias)
-            .map(|(joint, inertia)| {
+            .map(|((joint, friction), inertia)| {
                 let proportional = inertia * parameters.natural_frequency.powi(2);
                 Gains {
                     proportional,
@@ -77,7 +83,7 @@ impl Servo {
                     integral: proportional / parameters.integral_time,
                     effort: joint.effort,
                     joint_damping: joint.damping,
-                    joint_friction: joint.friction,
+                    joint_friction: *friction,
                 }
             })
             .collect::<Vec<_>>();
@@ -171,7 +177,7 @@ mod tests {
             damping_ratio: 1.0,
             integral_time: 0.1,
         };
-        Servo::new(&arm, &[2.0], &parameters)
+        Servo::new(&arm, &[0.0], &[2.0], &parameters)
     }
 
     #[test]

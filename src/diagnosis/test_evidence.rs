@@ -6,33 +6,18 @@ use super::fit::model_error::ModelError;
 use super::recordings::evidence::{Evidence, Measured, Prediction};
 use super::search::Search;
 use super::settings::Settings;
-use crate::device::DeviceParameters;
 use crate::effects::Coordinate;
 use crate::plant::{
-    CellParameters, ContactLaw, ContactParameters, DeviceParts, InitialState, LinkParameters,
-    Periodic, PlantInputs, PlantParameters, SensorErrors, registry, simulate,
+    ContactParameters, InitialState, PlantInputs, PlantParameters, registry, simulate,
 };
 use nalgebra::DMatrix;
 
 /// A device on a stiff contact.
 pub(super) fn plant() -> PlantParameters {
     PlantParameters {
-        device: DeviceParameters::default(),
         gravity_along_extension: -9.81,
-        contact: ContactParameters {
-            law: ContactLaw::Linear { stiffness: 2e5 },
-            damping: 400.0,
-            surface_offset: 0.0,
-            spindle_frequency: 0.0,
-            runout: Periodic::NONE,
-            waviness: Periodic::NONE,
-        },
-        sensors: SensorErrors::NONE,
-        latent: None,
-        own: Vec::new(),
-        parts: DeviceParts::Whole,
-        links: LinkParameters::NONE,
-        cell: CellParameters::RIGID,
+        contact: ContactParameters::linear(2e5, 400.0),
+        ..PlantParameters::default()
     }
 }
 

@@ -68,18 +68,15 @@ pub fn vocabulary(name: &str) -> (&str, Option<usize>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::device::DeviceParameters;
     use crate::effects::{LINK_EFFECTS, Parameter};
-    use crate::plant::registry::{CONTACT_DAMPING, CONTACT_STIFFNESS};
-    use crate::plant::{CellParameters, PlantParameters};
+    use crate::plant::{ContactParameters, PlantParameters};
 
     #[test]
     fn a_fit_looks_where_its_number_is_plausible() {
-        let plant = PlantParameters::of_cell(
-            DeviceParameters::default(),
-            (CONTACT_STIFFNESS.default, CONTACT_DAMPING.default),
-            CellParameters::RIGID,
-        );
+        let plant = PlantParameters {
+            contact: ContactParameters::usual(false),
+            ..PlantParameters::default()
+        };
         for effect in every().chain(LINK_EFFECTS) {
             for Parameter {
                 quantity, bounds, ..

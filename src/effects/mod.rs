@@ -22,5 +22,5 @@ pub use effect::{Clues, Effect, NUMBER_OFF, Parameter, Subsystem, Which};
 pub use header::{Header, kinds, meaning};
 pub use links::{LINK_EFFECTS, candidates};
 pub use number_off::{NUMBERS_OFF, numbers_off};
-pub use own::{PresentEffect, own_effect, sought};
+pub use own::{PresentEffect, actual, own_effect, sought};
 pub use quantity::Coordinate;

@@ -5,7 +5,9 @@ use std::sync::{Arc, Mutex};
 use super::effect::{Clues, Effect, Parameter, Subsystem, Which};
 use super::quantity::Coordinate;
 use crate::plant::registry::OWN_CONSTANT;
-use crate::plant::{Constant, LawText, MOST_CONSTANTS, OwnLaw, PlantParameters, Port};
+use crate::plant::{
+    Actual, Constant, LawText, MOST_CONSTANTS, Nominal, OwnLaw, PlantParameters, Port,
+};
 
 /// An effect that a model has, with all its numbers.
 #[derive(Debug, Clone)]
@@ -30,6 +32,18 @@ impl PresentEffect {
             parameter.quantity.set(plant, *value);
         }
     }
+}
+
+/// A model with effects, as a device, its contact and its sensors are made of it.
+pub fn actual(
+    nominal: &Nominal<PlantParameters>,
+    effects: &[PresentEffect],
+) -> Actual<PlantParameters> {
+    nominal.with(|plant| {
+        for effect in effects {
+            effect.put_into(plant);
+        }
+    })
 }
 
 /// The effect that the law of a place among a description's own is.

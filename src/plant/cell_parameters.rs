@@ -1,6 +1,7 @@
 //! Properties of a cell's arm and part: springs in the joints, encoders that are off, a servo that lags, a part that is not where it is believed.
 
 use super::sharp_edge::EdgeStation;
+use crate::physics::joint_spring::JointSpring;
 use glam::DVec3;
 
 /// Most joints that an arm may have.
@@ -21,7 +22,7 @@ pub struct CellParameters {
     /// Dry friction of each joint, which its drive overcomes: seen in its torque, not in what the device feels [N m].
     pub joint_friction: [f64; MOST_JOINTS],
     /// Damping over stiffness of each joint, a time [s].
-    pub joint_damping: f64,
+    pub joint_damping: [f64; MOST_JOINTS],
     /// Offset of each joint's encoder from the truth [rad].
     pub encoder_offset: [f64; MOST_JOINTS],
     /// Friction of the tool along the edge [1].
@@ -84,6 +85,16 @@ impl Burr {
 }
 
 impl CellParameters {
+    /// The spring between the motor and the link of a joint; none where they are one.
+    pub fn transmission(&self, joint: usize) -> Option<JointSpring> {
+        let stiffness = self.joint_stiffness[joint];
+        stiffness.is_finite().then(|| JointSpring {
+            stiffness,
+            damping_time: self.joint_damping[joint],
+            play: self.joint_play[joint],
+        })
+    }
+
     /// Displacement of the part from where it should be at one of its points [m], `middle` being the middle of its edge.
     pub fn aside(&self, middle: &EdgeStation, point: DVec3) -> DVec3 {
         let turn = middle.tangent.cross(middle.bisector) * self.part_tilt;
@@ -106,7 +117,7 @@ impl CellParameters {
         joint_stiffness: [f64::INFINITY; MOST_JOINTS],
         joint_play: [0.0; MOST_JOINTS],
         joint_friction: [0.0; MOST_JOINTS],
-        joint_damping: DAMPING_TIME,
+        joint_damping: [DAMPING_TIME; MOST_JOINTS],
         encoder_offset: [0.0; MOST_JOINTS],
         friction: 0.0,
         start_stroke: 0.0,

@@ -11,6 +11,8 @@
 use std::f64::consts::TAU;
 use std::ops::Deref;
 
+use super::registry;
+
 /// Force against penetration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ContactLaw {
@@ -110,6 +112,13 @@ impl ContactParameters {
             runout: Periodic::NONE,
             waviness: Periodic::NONE,
         }
+    }
+
+    /// The contact of a device of which nothing else is said, of one that may be ideal.
+    pub fn usual(ideal: bool) -> Self {
+        let [stiffness, damping] = [&registry::CONTACT_STIFFNESS, &registry::CONTACT_DAMPING]
+            .map(|number| number.default_of(ideal));
+        Self::linear(stiffness, damping)
     }
 
     /// As one of the recordings that are fitted together has it, by its place among them.

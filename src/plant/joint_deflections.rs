@@ -152,7 +152,7 @@ impl<'a> JointDeflections<'a> {
     fn spring(&self, joint: usize) -> JointSpring {
         JointSpring {
             stiffness: self.cell.joint_stiffness[joint].min(FIRM),
-            damping_time: self.cell.joint_damping,
+            damping_time: self.cell.joint_damping[joint],
             play: self.cell.joint_play[joint],
         }
     }

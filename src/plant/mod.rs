@@ -22,6 +22,8 @@ mod latent;
 mod load;
 mod measured_motion;
 mod moment;
+mod mounting;
+mod nominal;
 mod nudging;
 mod observation;
 mod own_law;
@@ -51,6 +53,8 @@ pub use latent::{Basis, Formula, Latent, MOST_COEFFICIENTS};
 pub use load::{PistonLoad, Touch};
 pub use measured_motion::MeasuredMotion;
 pub use moment::{Moment, Variable};
+pub use mounting::Mounting;
+pub use nominal::{Actual, Nominal};
 pub use nudging::Nudging;
 pub use observation::Observation;
 pub use own_law::{

@@ -3,6 +3,7 @@
 use super::cell_parameters::CellParameters;
 use super::contact::ContactParameters;
 use super::latent::Latent;
+use super::mounting::Mounting;
 use super::own_law::OwnLaw;
 use super::parts::{DeviceParts, LinkParameters};
 use super::sensors::SensorErrors;
@@ -17,6 +18,8 @@ pub struct PlantParameters {
     pub links: LinkParameters,
     /// The device.
     pub device: DeviceParameters,
+    /// How it is mounted.
+    pub mounting: Mounting,
     /// Component of gravity along extension [m/s2].
     pub gravity_along_extension: f64,
     /// Tool on workpiece.
@@ -31,27 +34,25 @@ pub struct PlantParameters {
     pub own: Vec<OwnLaw>,
 }
 
-impl PlantParameters {
-    /// A cell with ideal sensors, whose tool meets a linear contact of a stiffness [N/m] and a damping [N s/m].
-    pub fn of_cell(
-        device: DeviceParameters,
-        (stiffness, damping): (f64, f64),
-        cell: CellParameters,
-    ) -> Self {
+impl Default for PlantParameters {
+    /// A whole device with ideal sensors, alone: neither gravity along it, nor contact, nor an arm that gives.
+    fn default() -> Self {
         Self {
             parts: DeviceParts::Whole,
             links: LinkParameters::NONE,
-            device,
-            // The arm says it, moment by moment.
+            device: DeviceParameters::default(),
+            mounting: Mounting::default(),
             gravity_along_extension: 0.0,
-            contact: ContactParameters::linear(stiffness, damping),
-            cell,
+            contact: ContactParameters::linear(0.0, 0.0),
+            cell: CellParameters::RIGID,
             sensors: SensorErrors::NONE,
             latent: None,
             own: Vec::new(),
         }
     }
+}
 
+impl PlantParameters {
     /// Whether the rig moves as another one does where there is no workpiece.
     pub fn moves_freely_as(&self, other: &Self) -> bool {
         self.parts == other.parts

@@ -70,7 +70,7 @@ impl LoadedCell {
                 continue;
             }
             let pressed = if touches { force[i] } else { 0.0 };
-            let friction = self.scenario.contact.friction;
+            let friction = self.scenario.nominal.cell.friction;
             let load = (self.cell).torques_at(trajectory, i, stroke[i], pressed, friction);
             for (j, drive) in drives.iter_mut().enumerate() {
                 if let (Some(drive), Some(torque)) = (drive, &torques[j])

@@ -3,10 +3,9 @@
 use super::{Commands, ReplayCell};
 use crate::arm::chain::JointKind;
 use crate::arm::load_arm;
-use crate::cell::{CellError, arm_options, choose_edge, station, with_housing};
-use crate::plant::{
-    ArmTrajectory, CellParameters, EdgeStation, MOST_JOINTS, PlantParameters, SharpEdge,
-};
+use crate::cell::{CellError, arm_options, choose_edge, complete, station, with_housing};
+use crate::effects::actual;
+use crate::plant::{ArmTrajectory, EdgeStation, PlantParameters, SharpEdge};
 use crate::scenario::{RecordedCell, load_recorded_cell};
 use crate::workpiece::{EdgeCurve, load_mesh};
 use glam::DVec3;
@@ -40,16 +39,16 @@ impl LoadedCell {
     ///
     /// # Errors
     /// A fault of the arm, the mesh or the choice of the edge; joints that are not served alike.
-    pub fn new(scenario: RecordedCell) -> Result<Self, CellError> {
+    pub fn new(mut scenario: RecordedCell) -> Result<Self, CellError> {
         let arm = load_arm(&scenario.arm.urdf, &arm_options(&scenario.arm))?;
         let joints: Vec<String> = arm.chain.joints.iter().map(|j| j.name.clone()).collect();
         let axes = arm.chain.len();
-        if let Some(each) = &scenario.joint_stiffness
-            && each.len() != axes
+        if let Some(found) = scenario.springs
+            && found != axes
         {
             return Err(CellError::JointStiffness {
                 file: scenario.path.clone(),
-                found: each.len(),
+                found,
                 axes,
             });
         }
@@ -62,7 +61,8 @@ impl LoadedCell {
         }
         let mesh = load_mesh(&scenario.workpiece.mesh, scenario.workpiece.mesh_scale)?;
         let edge = choose_edge(&scenario.path, &scenario.workpiece, &mesh)?;
-        let device = &scenario.device;
+        complete(&mut scenario.nominal, &scenario.arm, &arm.chain);
+        let (device, mounting) = (&scenario.nominal.device, &scenario.nominal.mounting);
         let sharp = scenario
             .observed
             .sharp_edge
@@ -71,14 +71,14 @@ impl LoadedCell {
             sharp,
             observed: scenario.observed,
             encoder_noise: scenario.joint_noise,
-            chain: with_housing(&arm.chain, device),
+            chain: with_housing(&arm.chain, mounting),
             world_from_base: scenario.arm.world_from_base,
             gravity: scenario.gravity,
-            moving_mass: device.parameters.moving_mass,
-            mass_centre: device.moving_centre_of_mass,
-            ball_centre: device.tool_centre,
-            ball_radius: device.tool_radius,
-            full_stroke: device.parameters.full_stroke,
+            moving_mass: device.moving_mass,
+            mass_centre: mounting.moving_centre_of_mass,
+            ball_centre: mounting.tool_centre,
+            ball_radius: mounting.tool_radius,
+            full_stroke: device.full_stroke,
             middle: station(&edge, scenario.workpiece.world_from_part, 0.5 * edge.length),
         };
         Ok(Self {
@@ -89,41 +89,9 @@ impl LoadedCell {
         })
     }
 
-    /// The cell as believed.
+    /// The nominal cell with the effects that its file has.
     pub fn plant(&self) -> PlantParameters {
-        let scenario = &self.scenario;
-        let mut joint_stiffness = [f64::INFINITY; MOST_JOINTS];
-        for (own, stiffness) in
-            (joint_stiffness.iter_mut()).zip(scenario.joint_stiffness.iter().flatten())
-        {
-            *own = *stiffness;
-        }
-        let contact = &scenario.contact;
-        let cell = CellParameters {
-            servo_bandwidth: scenario.servo_bandwidth,
-            joint_stiffness,
-            joint_damping: scenario.joint_damping[0],
-            friction: contact.friction,
-            joint_friction: self.frictions(),
-            ..CellParameters::RIGID
-        };
-        let device = scenario.device.parameters.clone();
-        let law = (contact.stiffness, contact.damping);
-        let mut plant = PlantParameters::of_cell(device, law, cell);
-        plant.contact.spindle_frequency = contact.spindle_frequency;
-        for effect in &scenario.effects {
-            effect.put_into(&mut plant);
-        }
-        plant
-    }
-
-    /// Dry friction that the arm's file gives its joints [N m].
-    fn frictions(&self) -> [f64; MOST_JOINTS] {
-        let mut frictions = [0.0; MOST_JOINTS];
-        for (own, joint) in frictions.iter_mut().zip(&self.cell.chain.joints) {
-            *own = joint.friction;
-        }
-        frictions
+        actual(&self.scenario.nominal, &self.scenario.effects).into_inner()
     }
 
     /// The arm's trajectory in a recording: times [s], commanded places along the edge [m] and angles of the joints [rad], servos of a bandwidth [Hz].

@@ -1,6 +1,6 @@
 //! The load on the piston of a bench rig: weight, hand, and what it pushes on.
 
-use crate::plant::{ContactParameters, Cubic, PistonLoad, Touch};
+use crate::plant::{Actual, ContactParameters, Cubic, PistonLoad, PlantParameters, Touch};
 use crate::scenario::bench::{BenchScenario, LoadScenario};
 
 /// Value, first and second derivative of peak/2 (1 - cos(2 pi frequency (t - start))).
@@ -23,22 +23,22 @@ fn less(value: f64, swing: [f64; 3]) -> Cubic {
 }
 
 /// Load on the piston from `time` [s] on, over a step in which the motions of surface and hand are taken as parabolas.
-pub fn load_at(scenario: &BenchScenario, time: f64) -> PistonLoad<'_> {
+pub fn load_at<'a>(
+    scenario: &BenchScenario,
+    actual: &'a Actual<PlantParameters>,
+    time: f64,
+) -> PistonLoad<'a> {
     /// Nothing to push on.
     const FREE: ContactParameters = ContactParameters::linear(0.0, 0.0);
-    let mass = scenario.device.parameters.moving_mass;
+    let mass = actual.device.moving_mass;
     let mut load = match &scenario.load {
         LoadScenario::Free => {
             let mut load = PistonLoad::new(&FREE, mass, &[], time);
             load.stroke.0[0] = f64::INFINITY;
             load
         }
-        LoadScenario::Contact {
-            position,
-            contact,
-            motion,
-        } => {
-            let mut load = PistonLoad::new(contact, mass, &[Touch::AXIAL], time);
+        LoadScenario::Contact { position, motion } => {
+            let mut load = PistonLoad::new(&actual.contact, mass, &[Touch::AXIAL], time);
             let moved = motion.map_or([0.0; 3], |m| {
                 swing(m.peak_to_peak, m.frequency, m.start, time)
             });
@@ -49,6 +49,6 @@ pub fn load_at(scenario: &BenchScenario, time: f64) -> PistonLoad<'_> {
     let hand = scenario.hand.map_or([0.0; 3], |hand| {
         swing(hand.peak_force, hand.frequency, hand.start, time)
     });
-    load.axial = less(mass * scenario.gravity_along_extension, hand);
+    load.axial = less(mass * actual.gravity_along_extension, hand);
     load
 }

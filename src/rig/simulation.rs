@@ -6,12 +6,13 @@ use super::error::RigError;
 use super::estimator::RigEstimator;
 use super::load::load_at;
 use super::sample::{RigLog, RigSample, RigTruth};
-use crate::control::force::{ForceController, ForceObservation};
+use crate::control::force::{ForceController, ForceObservation, Pressing};
 use crate::device::{Device, DeviceState, PistonMotion};
-use crate::physics::push_only::PushOnly;
+use crate::effects::actual;
 use crate::physics::valve::ValvePosition;
 use crate::plant::{
-    Moment, PistonLoad, PlantParameters, Port, RunningDevice, RunningSensors, SensorReadings,
+    Actual, Moment, PistonLoad, PlantParameters, Port, RunningDevice, RunningSensors,
+    SensorReadings,
 };
 use crate::recording::{Recording, RecordingError};
 use crate::scenario::bench::{BenchScenario, CommandScenario, LoadScenario};
@@ -21,14 +22,14 @@ use crate::sensing::{Readings, SensorChain, Truth};
 /// A bench rig with its job: all that does not change during a run.
 #[derive(Debug, Clone)]
 pub struct Rig {
-    /// The job, with the rig as it is.
+    /// The job, with the rig as it is stated.
     pub scenario: BenchScenario,
     /// The device.
     pub device: Device,
     /// Controller that answers forces with set pressures, as it is at the start.
     pub controller: ForceController,
-    /// The rig's physics as one description, as it is.
-    pub plant: PlantParameters,
+    /// The rig's physics as it is.
+    pub actual: Actual<PlantParameters>,
 }
 
 impl Rig {
@@ -45,33 +46,27 @@ impl Rig {
     /// # Errors
     /// A controller whose loop would be unstable.
     pub fn new(scenario: BenchScenario) -> Result<Self, ScenarioError> {
-        // A controller sees the contact as it is at the largest force, where it is stiffest.
         let largest = match &scenario.command {
             CommandScenario::Force(steps) => steps.iter().map(|step| step.1).fold(0.0, f64::max),
             CommandScenario::SetPressure(_) => 0.0,
         };
-        let contact = match scenario.load {
-            LoadScenario::Free => None,
-            LoadScenario::Contact { contact, .. } => Some(PushOnly {
-                stiffness: contact.stiffness_at(largest),
-                damping: contact.damping,
-            }),
-        };
+        let pressing = (scenario.load != LoadScenario::Free).then_some(Pressing {
+            force: largest,
+            share: 1.0,
+        });
         let controller = ForceController::of_scenario(
             &scenario.controller,
-            &scenario.device.parameters,
+            &scenario.nominal,
             &scenario.sensing,
-            contact,
+            pressing,
             scenario.step,
         )?;
-        // From here on it is not what is believed that counts.
-        let plant = scenario.plant();
-        let scenario = scenario.as_it_is(&plant);
+        let actual = actual(&scenario.nominal, &scenario.effects);
         Ok(Self {
-            device: Device::new(plant.with_friction_of_terms(scenario.device.parameters.clone())),
+            device: Device::new(actual.with_friction_of_terms(actual.device.clone())),
             scenario,
             controller,
-            plant,
+            actual,
         })
     }
 
@@ -122,9 +117,9 @@ fn held<T: Copy>(steps: &[(f64, T)], time: f64) -> Option<T> {
 impl<'a> RigSimulation<'a> {
     /// The rig at rest, both chambers and the regulator's outlet at the atmosphere.
     pub fn new(rig: &'a Rig) -> Self {
-        let scenario = &rig.scenario;
-        let parameters = &scenario.device.parameters;
-        let weight = parameters.moving_mass * scenario.gravity_along_extension;
+        let (scenario, actual) = (&rig.scenario, &rig.actual);
+        let parameters = &actual.device;
+        let weight = parameters.moving_mass * actual.gravity_along_extension;
         let stroke = if scenario.start_stroke == 0.0 {
             weight.min(0.0) / parameters.end_stop.stiffness
         } else {
@@ -135,13 +130,13 @@ impl<'a> RigSimulation<'a> {
         let mut simulation = Self {
             rig,
             device: RunningDevice::new(
-                &rig.plant,
+                actual,
                 &rig.device,
                 (motion, rig.device.at_rest(stroke, 0.0)),
             ),
             controller: rig.controller.clone(),
             answer: 0.0,
-            errors: RunningSensors::new(scenario.sensor_errors),
+            errors: RunningSensors::new(actual.sensors),
             sensors: SensorChain::new(&scenario.sensing, scenario.seed),
             readings: Readings::default(),
             estimator: scenario.estimator.as_ref().map(RigEstimator::new),
@@ -245,7 +240,7 @@ impl<'a> RigSimulation<'a> {
                 self.answer = self.controller.set_pressure(&ForceObservation {
                     time,
                     desired_axial_force: desired,
-                    gravity_along_axis: scenario.gravity_along_extension,
+                    gravity_along_axis: scenario.nominal.gravity_along_extension,
                     measured_axial_force: self.readings.force,
                     stroke: self.readings.stroke,
                     acceleration: self.readings.acceleration,
@@ -258,7 +253,7 @@ impl<'a> RigSimulation<'a> {
 
     /// The load on the piston now, and the moment that its terms are of.
     fn load(&self) -> (PistonLoad<'a>, Option<Moment>) {
-        let mut load = load_at(&self.rig.scenario, self.time());
+        let mut load = load_at(&self.rig.scenario, &self.rig.actual, self.time());
         let surface = load.surface();
         let moment = (self.device).meet_terms(&mut load, self.applied, surface);
         (load, moment)
@@ -271,7 +266,7 @@ impl<'a> RigSimulation<'a> {
     }
 
     fn truth_under(&self, load: &PistonLoad<'_>, moment: Option<&Moment>) -> RigTruth {
-        let (plant, device, motion) = (&self.rig.plant, &self.rig.device, self.device.motion);
+        let (plant, device, motion) = (&self.rig.actual, &self.rig.device, self.device.motion);
         let force = device.piston_force(&self.device.state, motion);
         let contact_force = load.contact_force(0.0, motion);
         let added_outlet = moment.map_or(0.0, |now| plant.term(Port::OutletPressure, now));
@@ -295,7 +290,7 @@ impl<'a> RigSimulation<'a> {
         };
         let mut read = self.errors.read(truth.time, &there, truth.acceleration);
         if let Some(moment) = moment {
-            read.add(self.rig.plant.reading_terms(&Moment {
+            read.add(self.rig.actual.reading_terms(&Moment {
                 contact_force: truth.contact_force,
                 ..moment
             }));
@@ -321,7 +316,7 @@ impl<'a> RigSimulation<'a> {
             state: &self.device.state,
             truth: &truth,
             readings: &self.readings,
-            surface: load_at(&self.rig.scenario, truth.time).surface(),
+            surface: load_at(&self.rig.scenario, &self.rig.actual, truth.time).surface(),
             set_pressure: self.applied,
             desired_force: desired,
             estimate,

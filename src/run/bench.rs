@@ -79,7 +79,7 @@ fn limits(scenario: &BenchScenario) -> BenchLimits {
         command_times: steps.iter().map(|(time, _)| *time).collect(),
         disturbed_from,
         moving,
-        stroke_limits: (0.0, scenario.device.parameters.full_stroke),
-        atmosphere: scenario.device.parameters.gas.atmosphere,
+        stroke_limits: (0.0, scenario.nominal.device.full_stroke),
+        atmosphere: scenario.nominal.device.gas.atmosphere,
     }
 }

@@ -92,7 +92,7 @@ fn limits(cell: &Cell) -> SummaryLimits {
             .iter()
             .map(|pass| pass.force)
             .collect(),
-        stroke_limits: (0.0, cell.setup.scenario.device.parameters.full_stroke),
+        stroke_limits: (0.0, cell.setup.scenario.nominal.device.full_stroke),
         joint_efforts: joints.iter().map(|joint| joint.effort).collect(),
         joint_names: joints.iter().map(|joint| joint.name.clone()).collect(),
     }

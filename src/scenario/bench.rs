@@ -5,20 +5,19 @@ use std::path::{Path, PathBuf};
 pub use super::bench_file::HandScenario;
 use super::bench_file::{BenchFile, BenchKeys, CommandKeys, LoadKeys, LoadKind, ValveKeys};
 use super::controller::{ControllerScenario, ForceLaw, check_force, controller};
-use super::effects::{EffectKeys, effects};
+use super::effects::EffectKeys;
 use super::estimator::{EstimatorBase, estimator as set_up_estimator};
-use super::load::expectations;
-use super::rig_device::{BenchDevice, bench_device, usual_contact};
-use super::rig_file::blank;
+use super::load::{expectations, of_whole};
+use super::rig_device::bench_device;
 use super::sensing::{check_set_pressure, sensing};
 use super::{DeviceScenario, Expectation};
-use crate::effects::{Effect, PresentEffect, Subsystem, every};
+use crate::effects::{PresentEffect, Subsystem};
 use crate::estimation::ContactForceEstimator;
 use crate::keys::check::Section;
 use crate::keys::document::Document;
 use crate::keys::error::ScenarioError;
 use crate::physics::valve::ValvePosition;
-use crate::plant::{ContactLaw, ContactParameters, Latent, OwnLaw, PlantParameters, SensorErrors};
+use crate::plant::{ContactLaw, ContactParameters, Nominal, PlantParameters};
 use crate::sensing::{CommandChain, SensingParameters};
 
 /// A bench and what is done on it.
@@ -28,19 +27,19 @@ pub struct BenchScenario {
     pub path: PathBuf,
     /// Name for people; becomes the recording's title.
     pub title: String,
-    /// The device.
+    /// Physics of device, contact and sensors as the files state them.
+    pub nominal: Nominal<PlantParameters>,
+    /// The device, its physics apart.
     pub device: DeviceScenario,
     /// Length of the run [s].
     pub duration: f64,
-    /// Component of gravity along extension [m/s2].
-    pub gravity_along_extension: f64,
     /// Stroke at the start [m], unless the weight rests on the retracted stop.
     pub start_stroke: f64,
     /// Load that the tool meets.
     pub load: LoadScenario,
     /// A hand that pushes against extension.
     pub hand: Option<HandScenario>,
-    /// Physics beyond the believed device, with all its numbers.
+    /// Physics beyond the nominal device, with all its numbers.
     pub effects: Vec<PresentEffect>,
     /// Commands, in order of time.
     pub command: CommandScenario,
@@ -54,12 +53,6 @@ pub struct BenchScenario {
     pub seed: u64,
     /// Sensing between controller and device.
     pub sensing: SensingParameters,
-    /// Errors of a rig file's sensors, ahead of that chain.
-    pub sensor_errors: SensorErrors,
-    /// A term without a name that the rig file has.
-    pub latent: Option<Latent>,
-    /// Laws of a user's own that the rig file has.
-    pub own: Vec<OwnLaw>,
     /// Controller of the regulator's pressure where forces are commanded.
     pub controller: ControllerScenario,
     /// Estimator of the contact force, set up as it believes noise and device to be.
@@ -69,7 +62,6 @@ pub struct BenchScenario {
 }
 
 /// Load that the tool meets.
-#[expect(clippy::large_enum_variant, reason = "one of a scenario")]
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LoadScenario {
     /// Nothing.
@@ -78,8 +70,6 @@ pub enum LoadScenario {
     Contact {
         /// Where it stands along the stroke, from the retracted end [m].
         position: f64,
-        /// Contact, and where the surface really stands.
-        contact: ContactParameters,
         /// Its motion; none on a load cell.
         motion: Option<SurfaceMotion>,
     },
@@ -114,56 +104,13 @@ impl CommandScenario {
     }
 }
 
-impl BenchScenario {
-    /// The rig as its owner believes it to be.
-    #[must_use]
-    pub fn believed(&self) -> PlantParameters {
-        let contact = match self.load {
-            LoadScenario::Free => usual_contact(self.device.ideal),
-            LoadScenario::Contact { contact, .. } => contact,
-        };
-        PlantParameters {
-            device: self.device.parameters.clone(),
-            gravity_along_extension: self.gravity_along_extension,
-            contact,
-            sensors: self.sensor_errors,
-            latent: self.latent.clone(),
-            own: self.own.clone(),
-            ..blank()
-        }
-    }
-
-    /// The rig as it is, with its effects put in.
-    #[must_use]
-    pub fn plant(&self) -> PlantParameters {
-        let mut plant = self.believed();
-        for effect in &self.effects {
-            effect.put_into(&mut plant);
-        }
-        plant
-    }
-
-    /// The scenario with the rig's numbers as they are.
-    #[must_use]
-    pub fn as_it_is(mut self, plant: &PlantParameters) -> Self {
-        self.device.parameters = plant.device.clone();
-        self.gravity_along_extension = plant.gravity_along_extension;
-        self.sensor_errors = plant.sensors;
-        if let LoadScenario::Contact { contact, .. } = &mut self.load {
-            *contact = plant.contact;
-        }
-        self
-    }
-}
-
 /// The effects that a bench's file names.
 fn effects_of_bench(
     document: &Document<'_>,
     keys: &EffectKeys,
     plant: &PlantParameters,
 ) -> Result<Vec<PresentEffect>, ScenarioError> {
-    let known: Vec<&'static Effect> = every().collect();
-    let effects = effects(document, keys, &known, plant)?;
+    let effects = of_whole(document, keys, plant)?;
     for present in &effects {
         let reason = match present.effect.subsystem {
             Subsystem::Arm => "a bench has no arm",
@@ -188,21 +135,15 @@ pub(super) fn from_document(
 ) -> Result<BenchScenario, ScenarioError> {
     let file: BenchFile = document.read()?;
     let section = |table: &str| Section::new(document, table);
-    let BenchDevice {
-        device,
-        gravity_along_extension,
-        contact,
-        sensor_errors,
-        latent,
-        own,
-    } = bench_device(&section("device"), &file.device)?;
+    let (device, mut nominal) = bench_device(&section("device"), &file.device)?;
     let BenchKeys {
         duration,
         gravity,
         start_stroke,
     } = file.bench;
-    let gravity_along_extension = gravity.unwrap_or(gravity_along_extension);
-    let full_stroke = device.parameters.full_stroke;
+    let along = &mut nominal.gravity_along_extension;
+    *along = gravity.unwrap_or(*along);
+    let full_stroke = nominal.device.full_stroke;
     within_stroke(
         &section("bench"),
         "start_stroke_mm",
@@ -214,35 +155,34 @@ pub(super) fn from_document(
     }
     let step = file.simulation.step;
     let sensing = sensing(document, &file.sensing, step)?;
-    let parameters = &device.parameters;
-    let check_force = |section: &Section<'_>, force: f64| {
-        let gravity = gravity_along_extension;
-        check_force(section, force, gravity, parameters, &sensing.command)
-    };
+    let load = load(
+        &section("load"),
+        &file.load,
+        &mut nominal.contact,
+        full_stroke,
+    )?;
+    let nominal = Nominal(nominal);
+    let check_force =
+        |section: &Section<'_>, force: f64| check_force(section, force, &nominal, &sensing.command);
     let chain = &sensing.command;
     let command = commands(document, &file.command, duration, chain, check_force)?;
-    let load = load(&section("load"), &file.load, contact, full_stroke)?;
-    let controller = controller(document, &file.controller, parameters, &sensing, step)?;
+    let controller = controller(document, &file.controller, &nominal.device, &sensing, step)?;
     check_controller(&section("controller"), &controller, &command, &load)?;
     let base = EstimatorBase {
-        device: &device.parameters,
+        nominal: &nominal,
         sensing: &sensing,
-        gravity_along_extension,
         start_stroke,
         step,
     };
     let estimator = file.estimator.as_ref();
     let estimator = estimator.map(|keys| set_up_estimator(document, keys, &base));
-    let mut scenario = BenchScenario {
+    Ok(BenchScenario {
         path: path.to_owned(),
         title: section("").text("title", &file.title)?,
         duration,
-        gravity_along_extension,
         start_stroke,
         load,
-        effects: Vec::new(),
-        latent,
-        own,
+        effects: effects_of_bench(document, &file.effect, &nominal)?,
         hand: file.hand,
         command,
         valve: valve(document, &file.valve, duration)?,
@@ -251,13 +191,11 @@ pub(super) fn from_document(
         seed: file.simulation.seed,
         estimator: estimator.transpose()?,
         sensing,
-        sensor_errors,
         controller,
         expect: expectations(&section("expect"), &file.expect)?,
+        nominal,
         device,
-    };
-    scenario.effects = effects_of_bench(document, &file.effect, &scenario.believed())?;
-    Ok(scenario)
+    })
 }
 
 /// Refuses a place [m] beyond the device's stroke [m].
@@ -273,11 +211,11 @@ fn within_stroke(
     }
 }
 
-/// Load that the tool meets; `contact` is that of the rig, of which the keys given change a part.
+/// Load that the tool meets; of the contact the keys given change a part.
 fn load(
     section: &Section<'_>,
     keys: &LoadKeys,
-    mut contact: ContactParameters,
+    contact: &mut ContactParameters,
     full_stroke: f64,
 ) -> Result<LoadScenario, ScenarioError> {
     section.of_kind::<LoadKeys>(None)?;
@@ -294,7 +232,6 @@ fn load(
     contact.damping = keys.damping.unwrap_or(contact.damping);
     Ok(LoadScenario::Contact {
         position,
-        contact,
         motion: (keys.kind == LoadKind::Surface).then(|| SurfaceMotion {
             peak_to_peak: needed(keys.peak_to_peak),
             frequency: needed(keys.frequency),

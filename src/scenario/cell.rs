@@ -8,7 +8,6 @@ use serde::Deserialize;
 
 use super::controller::ControllerScenario;
 use super::judged::JudgedValue;
-use crate::device::DeviceParameters;
 use crate::effects::PresentEffect;
 use crate::keys::declaration::{Below, Filled, keys};
 use crate::keys::schema::type_schema;
@@ -16,7 +15,7 @@ use crate::keys::units::Unit;
 use crate::physics::cutting_force::CuttingForce;
 use crate::physics::removal_law::RemovalLaw;
 use crate::physics::spindle::Spindle;
-use crate::plant::registry;
+use crate::plant::{Nominal, PlantParameters, registry};
 use crate::removal::TurningTool;
 use crate::sensing::SensingParameters;
 
@@ -29,12 +28,12 @@ pub struct Scenario {
     pub title: String,
     /// The robot arm.
     pub arm: ArmScenario,
-    /// The device between flange and tool.
+    /// Physics of device and contact as the file states them; of the joints too, once the arm is loaded.
+    pub nominal: Nominal<PlantParameters>,
+    /// The device between flange and tool, its physics apart.
     pub device: DeviceScenario,
     /// The workpiece and the edge to follow.
     pub workpiece: WorkpieceScenario,
-    /// Contact between tool and workpiece.
-    pub contact: ContactScenario,
     /// Process of the cell.
     pub process: ProcessScenario,
     /// Passes along the edge as they differ from the process; empty for one that does not.
@@ -106,29 +105,15 @@ pub struct ArmScenario {
     pub servo: ServoScenario,
 }
 
-/// The device and its tool.
+/// The device's file, and how it is used.
 #[derive(Debug, Clone)]
 pub struct DeviceScenario {
     /// File that it was read from.
     pub model: PathBuf,
-    /// Pneumatics.
-    pub parameters: DeviceParameters,
     /// Whether it is the source paper's in what its scenario leaves open: without friction of its seals, at constant temperature.
     pub ideal: bool,
     /// Whether the slide is clamped at the working stroke.
     pub locked: bool,
-    /// Centre of the moving mass from the flange at zero stroke, along the axis [m].
-    pub moving_centre_of_mass: f64,
-    /// Radius of gyration of the moving mass about its centre [m].
-    pub moving_radius_of_gyration: f64,
-    /// Mass of the housing on the flange, which does not move with the slide [kg]; 0 where it is not known.
-    pub housing_mass: f64,
-    /// Its centre from the flange, along the axis [m].
-    pub housing_centre_of_mass: f64,
-    /// Centre of the tool's ball nose from the flange at zero stroke, along the axis [m].
-    pub tool_centre: f64,
-    /// Radius of the ball nose [m].
-    pub tool_radius: f64,
     /// Values in use that nobody has measured in public.
     pub judged: Vec<JudgedValue>,
 }
@@ -324,7 +309,7 @@ keys! {
     }
 
     /// `[contact]`: contact law.
-    pub struct ContactScenario: Copy {
+    pub(super) struct ContactKeys {
         /// contact stiffness between tool and workpiece
         stiffness: f64 = "stiffness_n_per_m", of registry::CONTACT_STIFFNESS;
         /// contact damping

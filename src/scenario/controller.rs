@@ -12,7 +12,7 @@ use crate::keys::document::Document;
 use crate::keys::error::{Place, ScenarioError};
 use crate::keys::suggestion::join;
 use crate::physics::seal_friction::SealFriction;
-use crate::plant::registry;
+use crate::plant::{Nominal, PlantParameters, registry};
 use crate::sensing::{CommandChain, SensingParameters};
 
 /// The table's name.
@@ -266,10 +266,10 @@ pub fn attainable_set_pressure(
 pub(super) fn check_force(
     section: &Section<'_>,
     force: f64,
-    gravity_along_axis: f64,
-    device: &DeviceParameters,
+    nominal: &Nominal<PlantParameters>,
     command: &CommandChain,
 ) -> Result<(), ScenarioError> {
+    let (device, gravity_along_axis) = (&nominal.device, nominal.gravity_along_extension);
     let map = PressureMap::new(device);
     let needed = map.unlimited(force, gravity_along_axis);
     let (largest, giver) = attainable_set_pressure(device, command);

@@ -5,24 +5,23 @@ use std::path::Path;
 use super::DeviceScenario;
 use super::file::{ModelFile, SCHEMA};
 use super::judged;
-use super::rig_file::blank;
 use crate::keys::check::Section;
 use crate::keys::declaration::Table;
 use crate::keys::document::{Document, read_text};
 use crate::keys::error::ScenarioError;
 use crate::keys::units::Unit;
-use crate::plant::{Number, registry};
+use crate::plant::{ContactParameters, Number, PlantParameters, registry};
 
 mod keys;
 mod parts;
 
 pub(super) use keys::ModelKeys;
 
-/// Reads a device model file: the device as it comes, not locked.
+/// Reads a device model file: the device as it comes, not locked, and its physics.
 ///
 /// # Errors
 /// The file cannot be read, or a key is unknown, absent or out of its range.
-pub fn load_device(path: &Path) -> Result<DeviceScenario, ScenarioError> {
+pub fn load_device(path: &Path) -> Result<(DeviceScenario, PlantParameters), ScenarioError> {
     load_with_overrides(path, None, false)
 }
 
@@ -31,7 +30,7 @@ pub(super) fn load_with_overrides(
     path: &Path,
     overrides: Option<(Section<'_>, &ModelKeys)>,
     ideal: bool,
-) -> Result<DeviceScenario, ScenarioError> {
+) -> Result<(DeviceScenario, PlantParameters), ScenarioError> {
     let text = read_text(path)?;
     let document = Document::new(path, &text, SCHEMA)?;
     let file: ModelFile = document.read()?;
@@ -49,7 +48,10 @@ pub(super) fn load_with_overrides(
         let expected = "keys of [device]".to_owned();
         return Err(Section::new(&document, "").refuse("judged", format!("{unknown:?}"), expected));
     }
-    let mut plant = blank();
+    let mut plant = PlantParameters {
+        contact: ContactParameters::usual(ideal),
+        ..PlantParameters::default()
+    };
     let is_part = |number: &Number| registry::PARTS.iter().any(|part| part.name == number.name);
     for number in registry::all().filter(|number| number.device_key.is_some()) {
         let value = model.number(number)?;
@@ -60,21 +62,14 @@ pub(super) fn load_with_overrides(
     model.add_parts(&mut plant.device)?;
     let device = DeviceScenario {
         model: path.to_path_buf(),
-        parameters: plant.device,
         locked: false,
         ideal,
-        moving_centre_of_mass: model.number(&registry::MOVING_CENTRE)?,
-        moving_radius_of_gyration: model.number(&registry::MOVING_GYRATION)?,
-        housing_mass: model.number(&registry::HOUSING_MASS)?,
-        housing_centre_of_mass: model.number(&registry::HOUSING_CENTRE)?,
-        tool_centre: model.number(&registry::TOOL_CENTRE)?,
-        tool_radius: model.number(&registry::TOOL_RADIUS)?,
         judged: judged::of_model(&file.judged, &file.device.numbers, |key| {
             model.stands_above(key)
         }),
     };
     model.check()?;
-    Ok(device)
+    Ok((device, plant))
 }
 
 /// Tables that give the same keys, the first to give one being right.

@@ -122,12 +122,11 @@ impl EffectRequest {
 
 #[cfg(test)]
 mod tests {
-    use super::super::rig_file::blank;
     use super::*;
 
     fn edits(text: &str) -> Vec<(String, String)> {
         let request = EffectRequest::parse(text).unwrap();
-        let edits = request.edits(&blank(), 2).unwrap();
+        let edits = request.edits(&PlantParameters::default(), 2).unwrap();
         let shown = |edit: &KeyValue| (edit.key().to_owned(), edit.shown());
         edits.iter().map(shown).collect()
     }
@@ -171,14 +170,14 @@ mod tests {
             ("joint_friction:joint=9", "no joint 9"),
         ] {
             let request = EffectRequest::parse(text).unwrap();
-            let error = request.edits(&blank(), 1).unwrap_err();
+            let error = request.edits(&PlantParameters::default(), 1).unwrap_err();
             assert!(error.contains(said), "{error}");
         }
     }
 
     #[test]
     fn the_usual_size_of_every_effect_has_all_its_numbers_within_their_range() {
-        let mut plant = blank();
+        let mut plant = PlantParameters::default();
         plant.cell.joint_stiffness = [1e6; crate::plant::MOST_JOINTS];
         plant.contact.law = crate::plant::ContactLaw::Linear { stiffness: 1.5e5 };
         for effect in every().chain(crate::effects::LINK_EFFECTS) {

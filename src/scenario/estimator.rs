@@ -9,7 +9,7 @@ use crate::keys::check::Section;
 use crate::keys::declaration::{Plain, keys};
 use crate::keys::document::Document;
 use crate::keys::error::ScenarioError;
-use crate::plant::registry;
+use crate::plant::{Nominal, PlantParameters, registry};
 use crate::sensing::{Measurement, SensingParameters};
 
 /// Name of the table.
@@ -80,9 +80,8 @@ impl KnownTo {
 
 /// Basis of a bench's estimator.
 pub(super) struct EstimatorBase<'a> {
-    pub device: &'a DeviceParameters,
+    pub nominal: &'a Nominal<PlantParameters>,
     pub sensing: &'a SensingParameters,
-    pub gravity_along_extension: f64,
     pub start_stroke: f64,
     /// Time step [s].
     pub step: f64,
@@ -94,9 +93,9 @@ pub(super) fn estimator(
     keys: &EstimatorKeys,
     base: &EstimatorBase<'_>,
 ) -> Result<ContactForceEstimator, ScenarioError> {
-    let device = nominal_device(keys, base.device);
+    let device = nominal_device(keys, &base.nominal.device);
     let parameters = EstimatorParameters {
-        gravity_along_axis: base.gravity_along_extension,
+        gravity_along_axis: base.nominal.gravity_along_extension,
         ..EstimatorParameters::new(noise(keys, base.sensing), tolerances(keys))
     };
     let period = if base.sensing.sample_rate == f64::INFINITY {

@@ -9,7 +9,7 @@ use glam::DVec3;
 use serde::Deserialize;
 
 use super::cell::{
-    ContactScenario, DriveScenario, LimitOverride, Misplacement, ProcessScenario, ServoScenario,
+    ContactKeys, DriveScenario, LimitOverride, Misplacement, ProcessScenario, ServoScenario,
     SimulationScenario,
 };
 use super::controller::ControllerKeys;
@@ -82,7 +82,7 @@ keys! {
         arm: ArmKeys = "arm";
         device: DeviceKeys = "device";
         workpiece: WorkpieceKeys = "workpiece";
-        contact: ContactScenario = "contact";
+        contact: ContactKeys = "contact";
         process: ProcessScenario = "process";
         pass: Vec<PassKeys> = "pass";
         tool: Option<ToolKeys> = "tool";

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use glam::DVec3;
 
+use super::cell::ContactKeys;
 use super::collision::collision;
 use super::controller::{ForceLaw, controller};
 use super::device::load_with_overrides;
@@ -15,15 +16,15 @@ use super::sensing::sensing;
 use super::tool;
 use super::workpiece::workpiece;
 use super::{
-    ArmScenario, ContactScenario, DeviceScenario, DriveScenario, Expectation, LimitOverride,
-    PassScenario, ProcessScenario, RemovalScenario, Scenario,
+    ArmScenario, DeviceScenario, DriveScenario, Expectation, LimitOverride, PassScenario,
+    ProcessScenario, RemovalScenario, Scenario,
 };
 use crate::effects::{Effect, PresentEffect, every};
 use crate::keys::check::{Section, pose};
 use crate::keys::declaration::tables;
 use crate::keys::document::{Document, read_text};
 use crate::keys::error::ScenarioError;
-use crate::plant::{CellParameters, PlantParameters, registry};
+use crate::plant::{ContactLaw, Nominal, Periodic, PlantParameters};
 
 /// Reads the scenario of a cell from a document that does not say otherwise.
 pub(super) fn from_document(
@@ -32,14 +33,14 @@ pub(super) fn from_document(
 ) -> Result<Scenario, ScenarioError> {
     let file: ScenarioFile = document.read()?;
     let section = |table: &str| Section::new(document, table);
-    let device = device(&section("device"), &file.device)?;
-    let contact = contact(&section("contact"), file.contact, device.ideal);
-    check_lock(&section("contact"), &device, &contact)?;
+    let (device, mut nominal) = device(&section("device"), &file.device)?;
+    contact(&section("contact"), &file.contact, &mut nominal);
+    check_lock(&section("contact"), &device, &nominal)?;
     let sensing = sensing(document, &file.sensing, file.simulation.step)?;
     let controller = controller(
         document,
         &file.controller,
-        &device.parameters,
+        &nominal.device,
         &sensing,
         file.simulation.step,
     )?;
@@ -52,21 +53,25 @@ pub(super) fn from_document(
         title: section("").text("title", &file.title)?,
         passes: passes(document, &file)?,
         tool: (file.tool.as_ref())
-            .map(|keys| tool::tool(&section("tool"), keys, device.tool_radius))
+            .map(|keys| tool::tool(&section("tool"), keys, nominal.mounting.tool_radius))
             .transpose()?,
         removal: removal(document, &file)?,
         arm: arm(&section("arm"), file.arm)?,
         workpiece: workpiece(&section("workpiece"), &file.workpiece)?,
-        process: process(&section("process"), file.process, &device)?,
+        process: process(
+            &section("process"),
+            file.process,
+            nominal.device.full_stroke,
+        )?,
         sensing,
         controller,
         collision: collision(document, &file.collision, &file.obstacle)?,
         simulation: file.simulation,
         expect: expectations(&section("expect"), &file.expect)?,
-        effects: of_whole(document, &file.effect, &device, &contact)?,
+        effects: of_whole(document, &file.effect, &nominal)?,
         judged: judged::of_cell(document, &tables::<ScenarioFile>()),
+        nominal: Nominal(nominal),
         device,
-        contact,
     })
 }
 
@@ -74,14 +79,10 @@ pub(super) fn from_document(
 pub(super) fn of_whole(
     document: &Document<'_>,
     keys: &EffectKeys,
-    device: &DeviceScenario,
-    contact: &ContactScenario,
+    nominal: &PlantParameters,
 ) -> Result<Vec<PresentEffect>, ScenarioError> {
     let known: Vec<&'static Effect> = every().collect();
-    let law = (contact.stiffness, contact.damping);
-    // Of the arm's joints a file that is read says little; the cell knows them (`cell::plant`).
-    let believed = PlantParameters::of_cell(device.parameters.clone(), law, CellParameters::RIGID);
-    effects(document, keys, &known, &believed)
+    effects(document, keys, &known, nominal)
 }
 
 pub(super) fn arm(
@@ -180,11 +181,11 @@ pub(super) fn is_rig(path: &Path) -> Result<bool, ScenarioError> {
     Ok(document.place("cylinder").position.is_some())
 }
 
-/// The device of a scenario: its model with what the scenario overrides.
+/// The device of a scenario, and its physics: its model with what the scenario overrides.
 pub(super) fn device(
     section: &Section<'_>,
     keys: &file::DeviceKeys,
-) -> Result<DeviceScenario, ScenarioError> {
+) -> Result<(DeviceScenario, PlantParameters), ScenarioError> {
     let overrides = Section::new(section.document(), "device.override");
     let model = section.file("model", &keys.model)?;
     if is_rig(&model)? {
@@ -194,51 +195,59 @@ pub(super) fn device(
     }
     let ideal = keys.ideal.unwrap_or(false);
     let layer = keys.overrides.as_ref().map(|keys| (overrides, keys));
-    let mut device = load_with_overrides(&model, layer, ideal)?;
+    let (mut device, plant) = load_with_overrides(&model, layer, ideal)?;
     device.locked = keys.locked;
-    Ok(device)
+    Ok((device, plant))
 }
 
-/// The contact of a device that may be ideal.
-pub(super) fn contact(
-    section: &Section<'_>,
-    mut contact: ContactScenario,
-    ideal: bool,
-) -> ContactScenario {
-    let is_open = |key: &str| !section.given().any(|given| given == key);
-    if is_open("stiffness_n_per_m") {
-        contact.stiffness = registry::CONTACT_STIFFNESS.default_of(ideal);
+/// Puts what a file says of the contact into a description that has the usual one of its device.
+pub(super) fn contact(section: &Section<'_>, keys: &ContactKeys, plant: &mut PlantParameters) {
+    let is_given = |key: &str| section.given().any(|given| given == key);
+    let contact = &mut plant.contact;
+    if is_given("stiffness_n_per_m") {
+        contact.law = ContactLaw::Linear {
+            stiffness: keys.stiffness,
+        };
     }
-    if is_open("damping_n_s_per_m") {
-        contact.damping = registry::CONTACT_DAMPING.default_of(ideal);
+    if is_given("damping_n_s_per_m") {
+        contact.damping = keys.damping;
     }
-    contact
+    contact.spindle_frequency = keys.spindle_frequency;
+    if keys.runout_amplitude > 0.0 {
+        // A ball that turns towards the part finds its surface nearer.
+        contact.runout = Periodic {
+            sine: -keys.runout_amplitude,
+            frequency: keys.runout_frequency,
+            ..Periodic::NONE
+        };
+    }
+    plant.cell.friction = keys.friction;
 }
 
 /// A clamp that yields as much as the contact would not lock the device.
 fn check_lock(
     section: &Section<'_>,
     device: &DeviceScenario,
-    contact: &ContactScenario,
+    nominal: &PlantParameters,
 ) -> Result<(), ScenarioError> {
     const LEAST_RATIO: f64 = 10.0;
-    let largest = device.parameters.lock_stiffness / LEAST_RATIO;
-    if device.locked && contact.stiffness > largest {
+    let largest = nominal.device.lock_stiffness / LEAST_RATIO;
+    let stiffness = nominal.contact.stiffness_at(0.0);
+    if device.locked && stiffness > largest {
         let expected = format!(
             "at most {largest} N/m, a tenth of the device's lock_stiffness_n_per_m, as the device is locked"
         );
-        return Err(section.refuse_si("stiffness_n_per_m", contact.stiffness, expected));
+        return Err(section.refuse_si("stiffness_n_per_m", stiffness, expected));
     }
     Ok(())
 }
 
-/// The process with a device.
+/// The process with a device of a full stroke [m].
 fn process(
     section: &Section<'_>,
     mut process: ProcessScenario,
-    device: &DeviceScenario,
+    full_stroke: f64,
 ) -> Result<ProcessScenario, ScenarioError> {
-    let full_stroke = device.parameters.full_stroke;
     if process.working_stroke.is_nan() {
         process.working_stroke = full_stroke / 2.0;
     }

@@ -31,10 +31,10 @@ pub use crate::keys::error::ScenarioError;
 pub use any::{AnyScenario, keys_given, load, load_any, load_bench, place_of};
 pub use bench::BenchScenario;
 pub use cell::{
-    ArmScenario, BurrScenario, ChamferScenario, CollisionScenario, ContactScenario, DeviceScenario,
-    Direction, DriveScenario, EdgeChoice, EdgeSelection, Expectation, FeedFollows, FeedMeasure,
-    LimitOverride, Misplacement, Obstacle, ObstacleShape, PassScenario, ProcessScenario,
-    RemovalScenario, Scenario, ServoScenario, SimulationScenario, ToolScenario, WorkpieceScenario,
+    ArmScenario, BurrScenario, ChamferScenario, CollisionScenario, DeviceScenario, Direction,
+    DriveScenario, EdgeChoice, EdgeSelection, Expectation, FeedFollows, FeedMeasure, LimitOverride,
+    Misplacement, Obstacle, ObstacleShape, PassScenario, ProcessScenario, RemovalScenario,
+    Scenario, ServoScenario, SimulationScenario, ToolScenario, WorkpieceScenario,
 };
 pub use cell_files::files_of_cell;
 pub use controller::{ControllerScenario, ForceLaw, attainable_set_pressure};

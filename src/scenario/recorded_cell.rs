@@ -11,16 +11,13 @@ use super::file::{self, Kind, KindOnly};
 use super::load;
 use super::sensing::white;
 use super::workpiece::workpiece;
-use super::{
-    ArmScenario, BurrScenario, ContactScenario, DeviceScenario, Misplacement, Scenario,
-    WorkpieceScenario,
-};
+use super::{ArmScenario, BurrScenario, DeviceScenario, Misplacement, Scenario, WorkpieceScenario};
 use crate::effects::PresentEffect;
 use crate::keys::check::Section;
 use crate::keys::declaration::{names, tables};
 use crate::keys::document::{Document, read_text};
 use crate::keys::error::ScenarioError;
-use crate::plant::{Observation, registry};
+use crate::plant::{Nominal, Observation, Periodic, PlantParameters};
 use crate::sensing::{FilterParameters, Measurement};
 
 mod improved;
@@ -40,22 +37,20 @@ pub struct RecordedCell {
     pub effects: Vec<PresentEffect>,
     /// Name for people.
     pub title: String,
-    /// The robot arm; its servo is in `servo_bandwidth`.
+    /// The robot arm.
     pub arm: ArmScenario,
-    /// The device between flange and tool.
+    /// Physics of device and contact as the file states them; of the joints too, once the arm is loaded.
+    pub nominal: Nominal<PlantParameters>,
+    /// The device between flange and tool, its physics apart.
     pub device: DeviceScenario,
     /// The workpiece and the edge that the tool rides.
     pub workpiece: WorkpieceScenario,
-    /// Contact between tool and workpiece.
-    pub contact: ContactScenario,
     /// Gravity in the world [m/s2].
     pub gravity: DVec3,
-    /// Bandwidth of the joints' servos, critically damped [Hz].
-    pub servo_bandwidth: f64,
-    /// Stiffness of the spring between motor and link of each joint, base first [N m/rad]; none where the joints do not give.
-    pub joint_stiffness: Option<Vec<f64>>,
-    /// Damping over stiffness of each joint [s] and the standard deviation of what is believed of it [s].
-    pub joint_damping: [f64; 2],
+    /// Number of joints to which the file gives a spring between motor and link; none where joints do not give.
+    pub springs: Option<usize>,
+    /// Standard deviation of the damping over stiffness of those springs [s].
+    pub joint_damping_deviation: f64,
     /// Standard deviation of the encoders' noise [rad].
     pub joint_noise: f64,
     /// Standard deviations of the noise of regulator outlet [Pa], stroke [m] and force [N].
@@ -74,8 +69,6 @@ pub struct RecordedCell {
 
 /// Relative tolerance of a number that a scenario states: none of a data sheet is truer.
 const TOLERANCE: f64 = 0.005;
-/// Damping of springs that are not there over their stiffness, and its tolerance [s].
-static DAMPING_TIME: [f64; 2] = [registry::JOINT_DAMPING.default, 1e-3];
 /// Noise of encoders that a scenario says have none [rad].
 const ENCODER_NOISE: f64 = 2e-6;
 /// Force above which a tool touches, in standard deviations of the load cell's noise [1].
@@ -99,7 +92,7 @@ pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
     let document = Document::new(path, &text, file::SCHEMA)?;
     let KindOnly { kind } = document.parse(&names(&tables::<RecordedCellFile>()))?;
     if kind == Kind::Cell {
-        return of_scenario(&any::load(path)?, &document, &text);
+        return of_scenario(any::load(path)?, &document, &text);
     }
     let file: RecordedCellFile = document.read()?;
     if file.kind != Kind::RecordedCell {
@@ -110,27 +103,35 @@ pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
         });
     }
     let section = |table: &str| Section::new(&document, table);
-    let device = load::device(&section("device"), &file.device)?;
+    let (device, mut nominal) = load::device(&section("device"), &file.device)?;
     if device.locked {
         let reason = "a locked device moves nowhere, and tells nothing".to_owned();
         return Err(section("device").misplaced("locked", reason));
     }
     let part = workpiece(&section("workpiece"), &file.workpiece)?;
-    let contact = load::contact(&section("contact"), file.contact, device.ideal);
+    load::contact(&section("contact"), &file.contact, &mut nominal);
+    nominal.contact.runout = Periodic::NONE;
     let is_misplaced = section("workpiece")
         .given()
         .any(|key| key == "misplacement");
     refuse_what_is_sought(&document, &part, is_misplaced)?;
     refuse_what_commands_say(&document)?;
     let (joints, sensors, assumed) = (file.joints, file.sensors, file.belief);
+    let mut arm = load::arm(&section("arm"), file.arm)?;
+    arm.servo.lag_bandwidth = joints.servo_bandwidth;
+    let cell = &mut nominal.cell;
+    cell.joint_damping.fill(joints.damping_time);
+    for (own, stiffness) in cell.joint_stiffness.iter_mut().zip(&joints.stiffness) {
+        *own = *stiffness;
+    }
     Ok(RecordedCell {
         path: path.to_owned(),
-        effects: load::of_whole(&document, &file.effect, &device, &contact)?,
+        effects: load::of_whole(&document, &file.effect, &nominal)?,
         text: text.clone(),
         title: section("").text("title", &file.title)?,
-        arm: load::arm(&section("arm"), file.arm)?,
+        arm,
         workpiece: part,
-        contact,
+        nominal: Nominal(nominal),
         gravity: assumed.gravity,
         tolerance: assumed.tolerance,
         start_stroke_tolerance: assumed.start_stroke_tolerance,
@@ -138,9 +139,8 @@ pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
         observed: Observation::COMPENSATED,
         has_job: false,
         sample_rate: f64::INFINITY,
-        servo_bandwidth: joints.servo_bandwidth,
-        joint_stiffness: Some(joints.stiffness),
-        joint_damping: [joints.damping_time, joints.damping_time_tolerance],
+        springs: Some(joints.stiffness.len()),
+        joint_damping_deviation: joints.damping_time_tolerance,
         joint_noise: sensors.joints,
         noise: [sensors.regulator_pressure, sensors.stroke, sensors.force],
     })
@@ -148,7 +148,7 @@ pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
 
 /// A cell's scenario as the belief of its owner.
 fn of_scenario(
-    scenario: &Scenario,
+    scenario: Scenario,
     document: &Document<'_>,
     text: &str,
 ) -> Result<RecordedCell, ScenarioError> {
@@ -158,7 +158,7 @@ fn of_scenario(
     if !scenario.arm.drives.is_empty() {
         return Err(section("arm").misplaced("drives", sought("what joints do")));
     }
-    if scenario.contact.runout_amplitude > 0.0 {
+    if scenario.nominal.contact.runout != Periodic::NONE {
         return Err(section("contact").misplaced("runout_um", sought("a runout")));
     }
     if scenario.device.locked {
@@ -181,18 +181,17 @@ fn of_scenario(
     ];
     let encoders = scenario.arm.servo.encoder_noise;
     Ok(RecordedCell {
-        path: scenario.path.clone(),
+        path: scenario.path,
         text: text.to_owned(),
-        effects: scenario.effects.clone(),
-        title: scenario.title.clone(),
-        arm: scenario.arm.clone(),
-        device: scenario.device.clone(),
-        workpiece: scenario.workpiece.clone(),
-        contact: scenario.contact,
+        effects: scenario.effects,
+        title: scenario.title,
+        arm: scenario.arm,
+        nominal: scenario.nominal,
+        device: scenario.device,
+        workpiece: scenario.workpiece,
         gravity: scenario.simulation.gravity,
-        servo_bandwidth: scenario.arm.servo.lag_bandwidth,
-        joint_stiffness: None,
-        joint_damping: DAMPING_TIME,
+        springs: None,
+        joint_damping_deviation: 0.0,
         joint_noise: if encoders > 0.0 {
             encoders
         } else {

@@ -38,8 +38,11 @@ mod values;
 pub use improved::{Improved, improved_text};
 pub(super) use keys::{PartKeys, RecordingsKeys, SharesKeys};
 pub use known::{FREQUENCY_NAME, Known, coefficient_name, of_term};
-pub(super) use quantities::{blank, described_numbers};
+pub(super) use quantities::described_numbers;
 pub use values::{RecordingForceRamp, Shares, Tolerance};
+
+/// Pressure of a regulator's supply of which a file says nothing: as much as a regulator stands, so that it never binds [Pa gauge].
+const AMPLE_SUPPLY: f64 = 16e5;
 
 /// Version of the format.
 const SCHEMA: u32 = 2;
@@ -102,7 +105,9 @@ pub fn load_rig(path: &Path) -> Result<RigFile, ScenarioError> {
 pub fn from_text(path: &Path, text: &str) -> Result<RigFile, ScenarioError> {
     let document = Document::new(path, text, SCHEMA)?;
     let mut keys: RigKeys = document.parse(&sections())?;
-    let mut plant = quantities::blank();
+    let mut plant = PlantParameters::default();
+    plant.device.regulator.dead_time = 0.0;
+    plant.device.regulator.supply = AMPLE_SUPPLY;
     let tolerances = values::base(&document, &keys, &mut plant)?;
     check_together(&document, &plant)?;
     let effects = effects(&document, &keys.effect, &candidates(plant.parts), &plant)?;

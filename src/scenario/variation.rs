@@ -237,7 +237,7 @@ mod tests {
                 ("device.override.cylinder_count", 3.0),
             ],
         );
-        let parameters = &mut other.device.parameters;
+        let parameters = &mut other.nominal.device;
         assert_eq!(
             (
                 parameters.bore,
@@ -248,7 +248,7 @@ mod tests {
         );
         // The file's own override stays where it is not replaced.
         assert_eq!(parameters.regulator.dead_time, 0.5);
-        let before = &as_it_is.device.parameters;
+        let before = &as_it_is.nominal.device;
         parameters.bore = before.bore;
         parameters.cylinder_count = before.cylinder_count;
         parameters.regulator.time_constant = before.regulator.time_constant;

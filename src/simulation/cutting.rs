@@ -53,20 +53,20 @@ impl Cutting {
         let tool = scenario.tool?;
         let rubbing = CuttingForce {
             specific_energy: 0.0,
-            friction: scenario.contact.friction,
+            friction: cell.setup.actual.cell.friction,
         };
         Some(Self {
             tool,
             removal: scenario.removal,
             cutting: scenario.removal.map_or(rubbing, |removal| removal.cutting),
             edge: cell.setup.part.edge_state.clone(),
-            ball_radius: scenario.device.tool_radius,
+            ball_radius: scenario.nominal.mounting.tool_radius,
             place: 0.0,
             ride: cell
                 .setup
                 .part
                 .edge_state
-                .ride(0.0, scenario.device.tool_radius),
+                .ride(0.0, scenario.nominal.mounting.tool_radius),
             wear: (scenario.removal).map_or(0.0, |removal| removal.wear_at_start),
             reading: CuttingReading::default(),
         })

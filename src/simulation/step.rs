@@ -114,7 +114,7 @@ impl<'a> Simulation<'a> {
         let reference = cell.plan.reference(0.0);
         let gravity = cell.gravity_along(reference.axis);
         let desired = cell.setup.passes[0].force * reference.share;
-        let parameters = &scenario.device.parameters;
+        let parameters = &scenario.nominal.device;
         let set_pressure = PressureMap::new(parameters).set_pressure(desired, gravity);
         let stroke = if scenario.device.locked {
             scenario.process.working_stroke
@@ -124,9 +124,9 @@ impl<'a> Simulation<'a> {
         };
         let motion = PistonMotion { stroke, speed: 0.0 };
         let at_rest = (motion, cell.device.at_rest(stroke, set_pressure));
-        let device = RunningDevice::new(&cell.setup.plant, &cell.device, at_rest);
+        let device = RunningDevice::new(&cell.setup.actual, &cell.device, at_rest);
         let mut positions = cell.plan.start();
-        let arm = &cell.setup.plant.cell;
+        let arm = &cell.setup.actual.cell;
         for (position, offset) in positions.iter_mut().zip(arm.encoder_offset) {
             *position -= offset;
         }
@@ -158,7 +158,7 @@ impl<'a> Simulation<'a> {
             reference,
             controller: cell.controller.clone(),
             answer: set_pressure,
-            errors: RunningSensors::new(cell.setup.plant.sensors),
+            errors: RunningSensors::new(cell.setup.actual.sensors),
             sensors,
             readings: Readings {
                 stroke,
@@ -337,7 +337,7 @@ impl<'a> Simulation<'a> {
     /// Loads on the slide from now on, at a time [s], with the moment that its terms are of. Where the surface stands no one knows but where the tool touches it.
     fn load<'b>(&'b self, time: f64, touches: &'b [Touch]) -> (PistonLoad<'b>, Option<Moment>) {
         let mass = self.cell.device.parameters().moving_mass;
-        let mut load = PistonLoad::new(&self.cell.setup.plant.contact, mass, touches, time);
+        let mut load = PistonLoad::new(&self.cell.setup.actual.contact, mass, touches, time);
         load.stroke.0[0] = self.device.motion.stroke;
         load.axial.0[0] = mass * self.carried;
         let moment = (self.device).meet_terms(&mut load, self.answer, f64::NAN);
@@ -418,7 +418,7 @@ impl<'a> Simulation<'a> {
                 (self.world.positions()[axis], self.world.velocities()[axis]);
             // The servo closes on the encoder: the arm stands off by what it reads too much.
             let command = AxisCommand {
-                position: command.position - self.cell.setup.plant.cell.encoder_offset[axis],
+                position: command.position - self.cell.setup.actual.cell.encoder_offset[axis],
                 ..command
             };
             self.laws[axis] = match &mut self.motors[axis] {
@@ -435,14 +435,15 @@ impl<'a> Simulation<'a> {
                 }
             };
         }
-        let device_scenario = &self.cell.setup.scenario.device;
-        self.laws[n] = if device_scenario.locked {
-            let stiffness = device_scenario.parameters.lock_stiffness;
+        let scenario = &self.cell.setup.scenario;
+        self.laws[n] = if scenario.device.locked {
+            let actual = &self.cell.setup.actual.device;
+            let stiffness = actual.lock_stiffness;
             JointLaw {
                 force: 0.0,
                 stiffness,
-                rest: self.cell.setup.scenario.process.working_stroke,
-                damping: 2.0 * (stiffness * device_scenario.parameters.moving_mass).sqrt(),
+                rest: scenario.process.working_stroke,
+                damping: 2.0 * (stiffness * actual.moving_mass).sqrt(),
             }
         } else {
             JointLaw::constant(device)
@@ -464,7 +465,7 @@ impl<'a> Simulation<'a> {
                 self.torques[axis] = torque;
             }
             self.servo.hold(axis, cut);
-            let offset = self.cell.setup.plant.cell.encoder_offset[axis];
+            let offset = self.cell.setup.actual.cell.encoder_offset[axis];
             // Told is the middle of the step.
             let commanded = told.position[axis] + 0.5 * dt * told.velocity[axis] - offset;
             off = off.max((commanded - angle).abs());

@@ -29,7 +29,7 @@ const CARRIER_STIFFNESS: f64 = 1e-3;
 /// Description from which the world is built.
 pub struct WorldDescription<'a> {
     /// Arm with the slide as its last joint.
-    pub chain: &'a KinematicChain,
+    pub chain: KinematicChain,
     /// Pose of the arm's base.
     pub world_from_base: DPose3,
     /// Gravity [m/s2].
@@ -47,21 +47,21 @@ pub struct WorldDescription<'a> {
 impl<'a> WorldDescription<'a> {
     /// The world of a cell.
     pub fn of(cell: &'a Cell) -> Self {
-        let scenario = &cell.setup.scenario;
+        let (scenario, actual) = (&cell.setup.scenario, &cell.setup.actual);
         Self {
-            chain: &cell.setup.bodies,
+            chain: cell.setup.bodies(),
             world_from_base: scenario.arm.world_from_base,
             gravity: scenario.simulation.gravity,
             step: scenario.simulation.step,
             tool: ToolBall {
-                radius: scenario.device.tool_radius,
-                centre_in_link: DVec3::new(0.0, 0.0, scenario.device.tool_centre),
+                radius: actual.mounting.tool_radius,
+                centre_in_link: DVec3::new(0.0, 0.0, actual.mounting.tool_centre),
             },
             part: &cell.setup.part.mesh_in_world,
             // A tool that turns rubs against its own surface's motion (`cutting`), not against its travel.
             friction: match scenario.tool {
                 Some(_) => 0.0,
-                None => scenario.contact.friction,
+                None => actual.cell.friction,
             },
         }
     }

@@ -119,8 +119,8 @@ fn record(text: &str) -> (Recording, Vec<f64>, [f64; 2], f64) {
     let scenario = load_bench(path).unwrap_or_else(|error| panic!("{error}"));
     let times = scenario.command.steps().iter().map(|(time, _)| *time);
     let ends = times.chain([scenario.duration]).collect();
-    let areas = scenario.device.parameters.areas();
-    let atmosphere = scenario.device.parameters.gas.atmosphere;
+    let areas = scenario.nominal.device.areas();
+    let atmosphere = scenario.nominal.device.gas.atmosphere;
     let (recording, stop) = Rig::new(scenario).unwrap().run(&mut |_| ()).unwrap();
     assert_eq!(stop, None);
     (

@@ -25,7 +25,7 @@ fn far_part() -> TriangleMesh {
 fn differences(robot: &Robot) -> (f64, f64) {
     let (arm, part) = (load(robot), far_part());
     let mut world = World::new(&WorldDescription {
-        chain: &arm.chain,
+        chain: arm.chain.clone(),
         world_from_base: DPose3::IDENTITY,
         gravity: DVec3::from_array(robot.gravity),
         step: 1e-3,

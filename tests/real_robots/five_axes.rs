@@ -69,8 +69,8 @@ fn five_axes_that_can_tilt_the_tool_follow_the_edge() {
     let folder = tempfile::tempdir().unwrap();
     let cell = Cell::new(five_axis_scenario(&folder, "1 0 0", 0.0))
         .unwrap_or_else(|error| panic!("{error}"));
-    let distance =
-        cell.setup.scenario.device.tool_centre + cell.setup.scenario.process.working_stroke;
+    let distance = cell.setup.scenario.nominal.mounting.tool_centre
+        + cell.setup.scenario.process.working_stroke;
     for i in 0..=50 {
         let reference = cell
             .plan
@@ -105,7 +105,7 @@ fn five_axes_whose_last_only_spins_the_tool_are_refused() {
 fn contact_force_and_tool_friction_count_against_effort_limits() {
     let folder = tempfile::tempdir().unwrap();
     let scenario = five_axis_scenario(&folder, "1 0 0", 0.0);
-    let (force, friction) = (scenario.process.force, scenario.contact.friction);
+    let (force, friction) = (scenario.process.force, scenario.nominal.cell.friction);
     let (phase, torque) = refused_torque(scenario, "waist_axis", 15.0);
     // Gravity does not turn the waist. The ball starts at (x, y), pushed back along -x and held back along y, the tool going along -y.
     let lift = 0.005 - force / 150e3;

@@ -6,6 +6,7 @@ use glam::{DQuat, DVec3};
 use glamx::DPose3;
 use idc_cell::cell::{Cell, CellError};
 use idc_cell::path::{Obstacle, PlanError};
+use idc_cell::plant::ContactLaw;
 use idc_cell::scenario::Scenario;
 
 use super::references;
@@ -80,7 +81,7 @@ pub(super) fn scenario_of(job: &Job, force: f64) -> Option<Scenario> {
         .unwrap();
     let mut scenario = scenario("plate_edge_ideal");
     assert_eq!(scenario.process.feed, 0.02);
-    assert_eq!(scenario.device.parameters.moving_mass, 4.0);
+    assert_eq!(scenario.nominal.device.moving_mass, 4.0);
     scenario.arm.urdf = robot.urdf;
     scenario.arm.base_link = Some(robot.base_link);
     scenario.arm.flange_link = robot.tip_link;
@@ -93,9 +94,9 @@ pub(super) fn scenario_of(job: &Job, force: f64) -> Option<Scenario> {
     );
     scenario.process.force = force;
     // Light robots carry the slide, which is what their limits here were found with, and no housing.
-    scenario.device.housing_mass = 0.0;
+    scenario.nominal.mounting.housing_mass = 0.0;
     // Six bar would not give what some of the arms are too weak for.
-    scenario.device.parameters.regulator.supply = 10e5;
+    scenario.nominal.device.regulator.supply = 10e5;
     Some(scenario)
 }
 
@@ -138,7 +139,8 @@ fn check(job: &Job) {
 fn refused(job: &Job) {
     let mut scenario = scenario_of(job, job.too_much).unwrap();
     // Or the tool would be planned so deep in the part that its shank is in it.
-    scenario.contact.stiffness *= 20.0;
+    let stiffness = 20.0 * scenario.nominal.contact.stiffness_at(0.0);
+    scenario.nominal.contact.law = ContactLaw::Linear { stiffness };
     let error = Cell::new(scenario).err().unwrap();
     println!("{}: {} N: {error}", job.robot, job.too_much);
     let CellError::Plan { source, .. } = &error else {

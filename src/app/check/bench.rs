@@ -25,7 +25,7 @@ pub(super) fn bench(scenario: BenchScenario) -> Result<Report, AppError> {
     let scenario = &rig.scenario;
     let kind = "a bench to simulate: the device without an arm";
     let mut report = Report::new(&file, kind, Some(&scenario.title));
-    report.device(&scenario.device.parameters);
+    report.device(&rig.actual.device);
     overrides(&mut report, &file)?;
     report.fact("load", load(&scenario.load));
     if let Some(hand) = &scenario.hand {

@@ -34,7 +34,7 @@ pub(super) fn cell(scenario: Scenario) -> Result<Report, AppError> {
     let mut report = Report::new(&file, "a robot cell to simulate", Some(&scenario.title));
     arm(&mut report, &scenario.arm, cell.setup.arm.chain.len());
     estimated(&mut report, cell.estimated.as_ref())?;
-    report.device(&scenario.device.parameters);
+    report.device(&scenario.nominal.device);
     flange(&mut report, &FlangeLoad::of(scenario, &cell.setup.arm));
     overrides(&mut report, &file)?;
     if scenario.device.locked {
@@ -214,11 +214,14 @@ pub(super) fn recorded(file: &Path) -> Result<Report, AppError> {
     let kind = "a robot cell of which there are recordings";
     let mut report = Report::new(file, kind, Some(&scenario.title));
     arm(&mut report, &scenario.arm, loaded.joints.len());
-    report.device(&scenario.device.parameters);
+    report.device(&scenario.nominal.device);
     overrides(&mut report, file)?;
     report.fact(
         "servo",
-        format!("{} Hz, critically damped", shown(scenario.servo_bandwidth)),
+        format!(
+            "{} Hz, critically damped",
+            shown(scenario.nominal.cell.servo_bandwidth)
+        ),
     );
     for present in &scenario.effects {
         report.fact("believed", present.effect.name);

@@ -122,10 +122,10 @@ pub(super) fn map(file: &Path) -> Result<Report, AppError> {
 
 /// A device model.
 pub(super) fn model(file: &Path) -> Result<Report, AppError> {
-    let device = load_device(file)?;
+    let (_, plant) = load_device(file)?;
     let kind = "a device model, for [device] model of a scenario";
     let mut report = Report::new(file, kind, None);
-    report.device(&device.parameters);
+    report.device(&plant.device);
     report.next("idc new cell, whose [device] names it".to_owned());
     Ok(report)
 }

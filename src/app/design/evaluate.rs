@@ -129,13 +129,12 @@ fn bench(scenario: BenchScenario) -> Result<Run, Failure> {
     }
     // How long it took says nothing about the design.
     finished.summary.timing = None;
-    let scenario = &rig.scenario;
-    let gravity = scenario.gravity_along_extension;
+    let gravity = rig.actual.gravity_along_extension;
     Ok(Run {
         metrics: values_of(BENCH_METRICS, &finished.summary),
         force_range: force_range(
-            &scenario.device.parameters,
-            &scenario.sensing.command,
+            &rig.actual.device,
+            &rig.scenario.sensing.command,
             [gravity; 2],
         ),
     })
@@ -150,7 +149,7 @@ fn cell(scenario: Scenario) -> Result<Run, Failure> {
     finished.summary.timing = None;
     let scenario = &cell.setup.scenario;
     let axial = force_range(
-        &scenario.device.parameters,
+        &scenario.nominal.device,
         &scenario.sensing.command,
         cell.gravity_on_edge,
     );

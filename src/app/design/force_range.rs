@@ -40,7 +40,7 @@ mod tests {
     #[test]
     fn weight_widens_or_narrows_it_and_seals_narrow_it() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/models/device.toml");
-        let mut device = load_device(path.as_ref()).unwrap().parameters;
+        let mut device = load_device(path.as_ref()).unwrap().1.device;
         assert_eq!(device.seal_friction.static_force, 14.0);
         device.seal_friction.static_force = 0.0;
         let near = |found: [f64; 2], expected: [f64; 2]| {

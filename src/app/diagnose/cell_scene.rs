@@ -239,7 +239,7 @@ fn of_device(
         *flange * DPose3::from_translation(out)
     });
     let slides = ScenePoses::Moving(slides.collect());
-    device_bodies(&cell.scenario.device, ScenePoses::Moving(flanges), slides)
+    device_bodies(&cell.scenario.nominal, ScenePoses::Moving(flanges), slides)
 }
 
 fn part(cell: &LoadedCell) -> Result<SceneBody, AppError> {
@@ -316,9 +316,7 @@ mod tests {
             commands: vec![vec![0.5; 2], vec![0.7; 2]],
             encoders: vec![None, None],
         };
-        let device = crate::device::DeviceParameters::default();
-        let rigid = crate::plant::CellParameters::RIGID;
-        let mut model = PlantParameters::of_cell(device, (1e5, 100.0), rigid);
+        let mut model = PlantParameters::default();
         model.cell.encoder_offset[1] = 0.2;
         let drawn = simulated_angles(&axes, &model);
         assert_eq!(drawn[0], [0.5; 2]);

@@ -123,9 +123,9 @@ impl Explained {
         let header: &'static Header = effect.header();
         let name = effect.vocabulary().0;
         let of_joint = effect.which != Which::Only;
-        let parameters = effect.parameters(&stage.believed);
-        let usual = effect.usual(&stage.believed);
-        let shown = scene::sizes(effect, &stage.believed);
+        let parameters = effect.parameters(&stage.nominal);
+        let usual = effect.usual(&stage.nominal);
+        let shown = scene::sizes(effect, &stage.nominal);
         let numbers: Vec<Number> = (parameters.iter().zip(usual).zip(shown))
             .map(|((parameter, usual), shown)| Number {
                 key: parameter.quantity.name,

@@ -76,7 +76,7 @@ pub(super) fn picture(effect: &Effect, stage: &Stage) -> Result<Picture, AppErro
             ..Panel::default()
         });
     }
-    let title = title(effect, &stage.believed, stage.telling);
+    let title = title(effect, &stage.nominal, stage.telling);
     let svg = svg(&Figure { title, panels })?;
     Ok(Picture { svg, difference })
 }

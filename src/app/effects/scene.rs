@@ -4,11 +4,12 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 use super::super::error::AppError;
-use super::super::run::put_in;
+use super::super::run::{nominal_of, put_in};
 use crate::cell::Cell;
 use crate::effects::{Effect, LINK_EFFECTS, Subsystem};
 use crate::plant::{
-    Channel, DeviceParts, InitialState, MeasuredMotion, PlantInputs, PlantParameters, simulate,
+    Channel, DeviceParts, InitialState, MeasuredMotion, Nominal, PlantInputs, PlantParameters,
+    simulate,
 };
 use crate::recording::Recording;
 use crate::recording::schema::{self, JointSignal, joint_quantity};
@@ -219,8 +220,8 @@ pub(super) struct Signals {
 /// A scene that is ready to be run.
 pub(super) struct Stage {
     kind: Kind,
-    /// Believed parameters there.
-    pub believed: PlantParameters,
+    /// Nominal parameters there.
+    pub nominal: Nominal<PlantParameters>,
     /// The joint that shows most, from 1.
     pub telling: usize,
 }
@@ -228,8 +229,8 @@ pub(super) struct Stage {
 enum Kind {
     Run {
         template: ScenarioTemplate,
-        /// Its run as believed, once it is asked for.
-        nominal: OnceLock<Signals>,
+        /// Its run without an effect, once it is asked for.
+        unchanged: OnceLock<Signals>,
         /// Holds the template's files as long as it may be run.
         _folder: tempfile::TempDir,
     },
@@ -241,11 +242,21 @@ impl Stage {
     pub(super) fn new(scene: &Scene) -> Result<Self, AppError> {
         match scene {
             Scene::Run(shipped) => Self::of_run(shipped),
-            Scene::Part(parts) => Ok(Self {
-                believed: believed_part(*parts, &Self::of_run(&STEPS)?.believed),
-                kind: Kind::Part,
-                telling: 1,
-            }),
+            Scene::Part(parts) => {
+                let mut nominal = Self::of_run(&STEPS)?.nominal;
+                nominal.parts = *parts;
+                // Slow enough for what is put in to be seen beside it.
+                nominal.device.regulator.time_constant = 0.3;
+                nominal.device.regulator.dead_time = 0.0;
+                if *parts == DeviceParts::DrivenSlide {
+                    nominal.device.seal_friction.viscous = 60.0;
+                }
+                Ok(Self {
+                    nominal,
+                    kind: Kind::Part,
+                    telling: 1,
+                })
+            }
         }
     }
 
@@ -261,48 +272,44 @@ impl Stage {
         }
         let path: PathBuf = folder.path().join(shipped.path);
         let template = ScenarioTemplate::read(&path)?;
-        let (believed, telling) = match template.with(&[])? {
-            AnyScenario::Bench(bench) => (bench.believed(), 1),
-            AnyScenario::Cell(cell) => {
-                let cell = Cell::new(*cell)?;
-                (cell.setup.plant.clone(), cell.telling_joint())
-            }
-        };
+        let (nominal, telling) = nominal_of(&template)?;
         Ok(Self {
             kind: Kind::Run {
                 template,
-                nominal: OnceLock::new(),
+                unchanged: OnceLock::new(),
                 _folder: folder,
             },
-            believed,
+            nominal,
             telling,
         })
     }
 
-    /// Its run as believed, and with an effect of usual size.
+    /// Its run without an effect, and with one of usual size.
     pub(super) fn runs(&self, effect: &Effect) -> Result<[Signals; 2], AppError> {
         match &self.kind {
-            Kind::Part => Ok([false, true].map(|has| run_part(&self.believed, effect, has))),
+            Kind::Part => Ok([false, true].map(|has| run_part(&self.nominal, effect, has))),
             Kind::Run {
-                template, nominal, ..
+                template,
+                unchanged,
+                ..
             } => {
-                let nominal = match nominal.get() {
-                    Some(nominal) => nominal,
+                let unchanged = match unchanged.get() {
+                    Some(unchanged) => unchanged,
                     None => {
                         let own = self.signals(template.with(&[])?)?;
-                        nominal.get_or_init(|| own)
+                        unchanged.get_or_init(|| own)
                     }
                 };
                 let asked = EffectRequest::parse(&asked(effect));
                 let asked = asked.map_err(|reason| AppError::With { reason })?;
                 let edits: Vec<KeyValue> = put_in(&[asked], template)?;
-                Ok([nominal.clone(), self.signals(template.with(&edits)?)?])
+                Ok([unchanged.clone(), self.signals(template.with(&edits)?)?])
             }
         }
     }
 
     fn signals(&self, scenario: AnyScenario) -> Result<Signals, AppError> {
-        let atmosphere = self.believed.device.gas.atmosphere;
+        let atmosphere = self.nominal.device.gas.atmosphere;
         match scenario {
             AnyScenario::Bench(bench) => {
                 let (recording, _) = Rig::new(*bench)?.run(&mut |_| ())?;
@@ -409,21 +416,6 @@ fn of_joint(recording: &Recording, joint: usize) -> Vec<Signal> {
     .into_iter()
     .flatten()
     .collect()
-}
-
-/// A part of a device as it is believed.
-fn believed_part(parts: DeviceParts, device: &PlantParameters) -> PlantParameters {
-    let mut part = PlantParameters {
-        parts,
-        ..device.clone()
-    };
-    // Slow enough for what is put in to be seen beside it.
-    part.device.regulator.time_constant = 0.3;
-    part.device.regulator.dead_time = 0.0;
-    if parts == DeviceParts::DrivenSlide {
-        part.device.seal_friction.viscous = 60.0;
-    }
-    part
 }
 
 /// Its inputs.

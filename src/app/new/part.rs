@@ -287,7 +287,7 @@ fn stretches(trial: &Trial<'_>, list: &EdgeList, sharp_angle: f64) -> Vec<Ridden
         else {
             continue;
         };
-        let radius = setup.scenario.device.tool_radius;
+        let radius = setup.scenario.nominal.mounting.tool_radius;
         let balls = largest_balls(&setup.part, radius);
         let longest = LONGEST * setup.arm.chain.reach();
         let tightest = balls.iter().map(|ball| ball.1).fold(radius, f64::min);

@@ -15,6 +15,7 @@ use super::job::Manner;
 use super::settings::{Setting, Variant, with_flags};
 use super::source::Source;
 use crate::cell::Cell;
+use crate::plant::{Nominal, PlantParameters};
 use crate::report::Style;
 use crate::run::Job;
 use crate::scenario::{AnyScenario, EffectRequest, KeyValue, ScenarioTemplate};
@@ -83,6 +84,20 @@ impl RunArguments {
     }
 }
 
+/// The nominal physics of a scenario, and the joint that shows most in it, from 1.
+pub(in super::super) fn nominal_of(
+    template: &ScenarioTemplate,
+) -> Result<(Nominal<PlantParameters>, usize), AppError> {
+    Ok(match template.with(&[])? {
+        AnyScenario::Bench(bench) => (bench.nominal, 1),
+        AnyScenario::Cell(cell) => {
+            let cell = Cell::new(*cell)?;
+            let telling = cell.telling_joint();
+            (cell.setup.scenario.nominal, telling)
+        }
+    })
+}
+
 /// Changes of a scenario by the effects that are asked for.
 pub(in super::super) fn put_in(
     requests: &[EffectRequest],
@@ -91,16 +106,10 @@ pub(in super::super) fn put_in(
     if requests.is_empty() {
         return Ok(Vec::new());
     }
-    let (believed, telling) = match template.with(&[])? {
-        AnyScenario::Bench(bench) => (bench.believed(), 1),
-        AnyScenario::Cell(cell) => {
-            let cell = Cell::new(*cell)?;
-            (cell.setup.plant.clone(), cell.telling_joint())
-        }
-    };
+    let (nominal, telling) = nominal_of(template)?;
     let mut edits = Vec::new();
     for request in requests {
-        let own = request.edits(&believed, telling);
+        let own = request.edits(&nominal, telling);
         edits.extend(own.map_err(|reason| AppError::With { reason })?);
     }
     Ok(edits)

@@ -15,6 +15,7 @@ use super::{
 use crate::device::DeviceParameters;
 use crate::keys::units::Unit;
 use crate::physics::push_only::PushOnly;
+use crate::plant::{Nominal, PlantParameters};
 use crate::scenario::{ControllerScenario, ForceLaw, ScenarioError, attainable_set_pressure};
 use crate::sensing::{CommandChain, SensingParameters};
 
@@ -28,23 +29,43 @@ const KEYS: [(&str, &str); 6] = [
     ("tracking_frequency", "tracking_frequency_rad_per_s"),
 ];
 
+/// How a device presses on its contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pressing {
+    /// Largest force [N], at which a contact is stiffest.
+    pub force: f64,
+    /// Share of the slide's motion that goes into the contact, and of the contact's force that the slide feels [1].
+    pub share: f64,
+}
+
+impl Pressing {
+    /// The nominal contact as the slide feels it.
+    fn felt(self, nominal: &Nominal<PlantParameters>) -> PushOnly {
+        let share = self.share.powi(2);
+        PushOnly {
+            stiffness: share * nominal.contact.stiffness_at(self.force),
+            damping: share * nominal.contact.damping,
+        }
+    }
+}
+
 impl ForceController {
-    /// The controller that a scenario chooses, for a device behind these sensors that presses on `contact`; none is none to feed back.
+    /// The controller that a scenario chooses, for a nominal device behind these sensors that presses so; without there is no force to feed back.
     /// `step` is the scenario's time step [s].
     ///
     /// # Errors
     /// A loop that would be unstable, or a value out of what the controller takes.
     pub fn of_scenario(
         choice: &ControllerScenario,
-        device: &DeviceParameters,
+        nominal: &Nominal<PlantParameters>,
         sensing: &SensingParameters,
-        contact: Option<PushOnly>,
+        pressing: Option<Pressing>,
         step: f64,
     ) -> Result<Self, ScenarioError> {
-        let believed = believed(device, sensing);
-        let contact = match (choice.law, contact) {
+        let believed = believed(&nominal.device, sensing);
+        let contact = match (choice.law, pressing) {
             (ForceLaw::OpenLoop, _) | (_, None) => return Ok(Self::pressure_map(&believed)),
-            (_, Some(contact)) => contact,
+            (_, Some(pressing)) => pressing.felt(nominal),
         };
         let period = choice.steps(step) as f64 * step;
         let delayed = delayed(&believed, sensing.force_delay());

@@ -32,6 +32,7 @@ mod seal_model;
 mod stability;
 
 pub use error::{ControllerError, StabilityLimit};
+pub use from_scenario::Pressing;
 pub use observation::ForceObservation;
 pub use parameters::{
     ControllerParameters, DisturbancePredictionParameters, FeedbackLinearisationParameters,

@@ -67,15 +67,11 @@ const USUAL_FORCE: f64 = 150.0;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::device::DeviceParameters;
-    use crate::plant::CellParameters;
 
     #[test]
     fn the_spindle_tells_runout_from_waviness_where_its_turns_are_known() {
         let starts = |spindle: f64| {
-            let law = (1e5, 100.0);
-            let mut plant =
-                PlantParameters::of_cell(DeviceParameters::default(), law, CellParameters::RIGID);
+            let mut plant = PlantParameters::default();
             plant.contact.spindle_frequency = spindle;
             let clues = Clues {
                 plant: &plant,

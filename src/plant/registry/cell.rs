@@ -12,7 +12,7 @@ numbers! { CELL:
     /// spring between motor and link
     JOINT_STIFFNESS = "joints.stiffness_n_m_per_rad", [100.0, f64::INFINITY], (p, joint => p.cell.joint_stiffness[joint]), f64::INFINITY;
     /// damping of that spring over its stiffness
-    JOINT_DAMPING = "joints.damping_time_s", [1e-4, 0.05], (p => p.cell.joint_damping), DAMPING_TIME;
+    JOINT_DAMPING = "joints.damping_time_s", [1e-4, 0.05], (|p, _| p.cell.joint_damping[0], |p, _, v| p.cell.joint_damping.fill(v)), DAMPING_TIME;
     /// play between motor and link, from flank to flank
     JOINT_PLAY = "joints.play_rad", [0.0, PI / 36.0], (p, joint => p.cell.joint_play[joint]), 0.0;
     /// dry friction of the joint

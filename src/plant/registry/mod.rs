@@ -10,6 +10,7 @@ mod cylinder;
 mod ideal;
 mod latent;
 mod links;
+mod mounting;
 mod own;
 mod parts;
 mod regulator;
@@ -21,6 +22,7 @@ pub use contact::*;
 pub use cylinder::*;
 pub use latent::*;
 pub use links::*;
+pub use mounting::*;
 pub use own::*;
 pub use parts::*;
 pub use regulator::*;
@@ -137,7 +139,7 @@ use numbers;
 /// All of them.
 pub fn all() -> impl Iterator<Item = &'static Number> {
     let parts = [
-        CYLINDER, AIR, REGULATOR, PARTS, CONTACT, CELL, SENSORS, LINKS, LATENT, OWN,
+        CYLINDER, AIR, REGULATOR, PARTS, MOUNTING, CONTACT, CELL, SENSORS, LINKS, LATENT, OWN,
     ];
     parts.into_iter().flatten().copied()
 }

@@ -41,18 +41,6 @@ numbers! { PARTS:
     /// segments of the line, one behind the other
     HOSE_SEGMENTS = "hose.segments", [1.0, MOST_SEGMENTS as f64],
         (|p, _| p.device.hose.map_or(0.0, |h| h.segments() as f64), |p, _, v| set_line(p, (line(p).0, line(p).1, v.round() as usize)));
-    /// ball nose
-    TOOL_RADIUS = "tool.ball_radius_m" as "tool_ball_radius_mm", [5e-4, 0.1], (nothing, keep);
-    /// centre of the ball from the flange at zero stroke, at least the ball's radius
-    TOOL_CENTRE = "tool.centre_m" as "tool_centre_mm", [0.001, 1.0], (nothing, keep);
-    /// centre of the moving mass from the flange at zero stroke
-    MOVING_CENTRE = "tool.moving_centre_of_mass_m" as "moving_centre_of_mass_mm", [0.0, 1.0], (nothing, keep);
-    /// of the moving mass about its centre, the same about every axis
-    MOVING_GYRATION = "tool.moving_radius_of_gyration_m" as "moving_radius_of_gyration_mm", [0.001, 0.5], (nothing, keep);
-    /// of the housing, which stands still on the flange: cylinders, guides, valve; 0 where it is not known
-    HOUSING_MASS = "tool.housing_mass_kg" as "housing_mass_kg", [0.0, 200.0], (nothing, keep);
-    /// centre of the housing's mass from the flange
-    HOUSING_CENTRE = "tool.housing_centre_of_mass_m" as "housing_centre_of_mass_mm", [0.0, 1.0], (nothing, keep);
     /// a way from here to there, which changes nothing by itself
     WAY = "way", super::ANY, (nothing, keep);
 }

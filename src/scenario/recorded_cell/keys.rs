@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::super::cell::ContactScenario;
+use super::super::cell::ContactKeys;
 use super::super::effects::EffectKeys;
 use super::super::file::{ArmKeys, DeviceKeys, Kind, WorkpieceKeys};
 use crate::keys::declaration::keys;
@@ -21,7 +21,7 @@ keys! {
         joints: JointsKeys = "joints";
         device: DeviceKeys = "device";
         workpiece: WorkpieceKeys = "workpiece";
-        contact: ContactScenario = "contact";
+        contact: ContactKeys = "contact";
         sensors: SensorsKeys = "sensors";
         belief: BeliefKeys = "belief";
         /// physics beyond the nominal model: [`[[effect]]`](#effect)

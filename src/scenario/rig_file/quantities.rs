@@ -1,10 +1,8 @@
 //! The numbers of a rig file: where each stands in the rig's description, and the range in which it is plausible as SI.
 
-use crate::device::DeviceParameters;
 use crate::keys::check::plain;
 use crate::keys::units::Unit;
-use crate::physics::regulator::RegulatorParameters;
-use crate::plant::{CellParameters, DeviceParts, Number, PlantParameters, registry};
+use crate::plant::{DeviceParts, Number, registry};
 
 /// The numbers of the rig, in the order of the format; each stands under its dotted name.
 pub(super) static NUMBERS: [&Number; 21] = [
@@ -98,22 +96,6 @@ pub(super) fn split(dotted: &'static str) -> (&'static str, &'static str) {
     dotted
         .split_once('.')
         .expect("every number of the rig stands in a table")
-}
-
-/// Pressure of a regulator's supply of which the file says nothing: as much as a regulator stands, so that it never binds [Pa gauge].
-const AMPLE_SUPPLY: f64 = 16e5;
-
-/// The believed model with all that a file does not say: no friction, no leaks, isothermal chambers, ideal sensors. Its numbers are for the file to set.
-pub(in super::super) fn blank() -> PlantParameters {
-    let device = DeviceParameters {
-        regulator: RegulatorParameters {
-            dead_time: 0.0,
-            supply: AMPLE_SUPPLY,
-            ..RegulatorParameters::default()
-        },
-        ..DeviceParameters::default()
-    };
-    PlantParameters::of_cell(device, (0.0, 0.0), CellParameters::RIGID)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use super::super::bench::{
 use super::{MINIMAL_BENCH, read_bench, replaced, text_refused};
 use crate::physics::gas_process::GasProcess;
 use crate::physics::valve::ValvePosition;
-use crate::plant::{ContactLaw, ContactParameters, Periodic};
+use crate::plant::ContactParameters;
 
 fn bench(from: &str, to: &str) -> BenchScenario {
     read_bench(&replaced(MINIMAL_BENCH, from, to)).unwrap()
@@ -29,7 +29,7 @@ fn every_key_of_bench_and_simulation_reaches_its_field() {
          [simulation]\nstep_ms = 0.5\ndevice_substeps = 4\nseed = 9\n[expect]\na_n = { min = -1, max = 1 }\n",
     );
     assert_eq!((bench.duration, bench.start_stroke), (7.0, 0.012));
-    assert_eq!(bench.gravity_along_extension, -9.81);
+    assert_eq!(bench.nominal.gravity_along_extension, -9.81);
     assert_eq!((bench.step, bench.substeps, bench.seed), (5e-4, 4, 9));
     let bound = &bench.expect[0];
     assert_eq!(
@@ -40,28 +40,20 @@ fn every_key_of_bench_and_simulation_reaches_its_field() {
 
 #[test]
 fn every_kind_of_load_is_read() {
-    let contact = ContactParameters {
-        law: ContactLaw::Linear { stiffness: 2e4 },
-        damping: 200.0,
-        surface_offset: 0.0,
-        spindle_frequency: 0.0,
-        runout: Periodic::NONE,
-        waviness: Periodic::NONE,
-    };
+    let contact = ContactParameters::linear(2e4, 200.0);
     let given = "position_mm = 35\nstiffness_n_per_m = 2e4\ndamping_n_s_per_m = 200\n";
     let moved = "peak_to_peak_mm = 20\nfrequency_hz = 0.5\nstart_s = 4\n";
     assert_eq!(bench(FREE, FREE).load, LoadScenario::Free);
     let load_cell = bench(FREE, &format!("kind = \"load_cell\"\n{given}"));
     let standing = LoadScenario::Contact {
         position: 0.035,
-        contact,
         motion: None,
     };
     assert_eq!(load_cell.load, standing);
+    assert_eq!(load_cell.nominal.contact, contact);
     let surface = bench(FREE, &format!("kind = \"surface\"\n{given}{moved}"));
     let moving = LoadScenario::Contact {
         position: 0.035,
-        contact,
         motion: Some(SurfaceMotion {
             peak_to_peak: 0.02,
             frequency: 0.5,
@@ -69,6 +61,7 @@ fn every_kind_of_load_is_read() {
         }),
     };
     assert_eq!(surface.load, moving);
+    assert_eq!(surface.nominal.contact, contact);
 }
 
 #[test]
@@ -109,8 +102,9 @@ fn every_new_key_of_the_device_reaches_its_field() {
          seal_viscous_coefficient_n_s_per_m = 30\nseal_presliding_displacement_um = 60\ngas_process = \"wall_heat\"\n\
          wall_conductance_w_per_k = 0.7\nhose_length_m = 2\nhose_diameter_mm = 4\n[bench]\n",
     )
-    .device
-    .parameters;
+    .nominal
+    .0
+    .device;
     let seals = parameters.seal_friction;
     assert_eq!((seals.coulomb, seals.static_force), (10.0, 15.0));
     assert_eq!((seals.stribeck_velocity, seals.viscous), (0.012, 30.0));

@@ -61,7 +61,7 @@ fn every_key_of_what_is_off_by_default_reaches_its_field() {
     };
     let text = with(keys).replace("[device]\n", "[device]\nideal = true\n");
     let read = read_bench(&text).unwrap();
-    assert_eq!(read.device.parameters, expected);
+    assert_eq!(read.nominal.device, expected);
 }
 
 #[test]

@@ -40,12 +40,10 @@ fn refused(rig: &str, from: &str, to: &str, says: &str) {
 #[test]
 fn the_rig_brings_its_device_weight_and_contact() {
     let bench = read(RIG, "kind = \"free\"\n", LOAD_CELL).unwrap();
-    assert_eq!(bench.device.parameters.bore, 0.025);
-    assert_eq!(bench.device.parameters.regulator.dead_time, 0.0);
-    assert_eq!(bench.gravity_along_extension, -9.81);
-    let LoadScenario::Contact { contact, .. } = bench.load else {
-        panic!("{:?}", bench.load);
-    };
+    assert_eq!(bench.nominal.device.bore, 0.025);
+    assert_eq!(bench.nominal.device.regulator.dead_time, 0.0);
+    assert_eq!(bench.nominal.gravity_along_extension, -9.81);
+    let contact = bench.nominal.contact;
     assert_eq!(
         contact.law,
         ContactLaw::Linear {
@@ -53,21 +51,19 @@ fn the_rig_brings_its_device_weight_and_contact() {
         }
     );
     assert_eq!(contact.damping, 388.0);
-    assert_eq!(bench.sensor_errors, crate::plant::SensorErrors::NONE);
+    assert_eq!(bench.nominal.sensors, crate::plant::SensorErrors::NONE);
 }
 
 #[test]
 fn what_the_bench_gives_itself_counts() {
     let given = format!("{LOAD_CELL}stiffness_n_per_m = 3e5\n");
     let bench = read(RIG, "kind = \"free\"\n", &given).unwrap();
-    let LoadScenario::Contact { contact, .. } = bench.load else {
-        panic!("{:?}", bench.load);
-    };
+    let contact = bench.nominal.contact;
     assert_eq!(contact.law, ContactLaw::Linear { stiffness: 3e5 });
     assert_eq!(contact.damping, 388.0);
     let level = "duration_s = 6\ngravity_along_extension_m_per_s2 = 0";
     let bench = read(RIG, "duration_s = 6", level).unwrap();
-    assert_eq!(bench.gravity_along_extension, 0.0);
+    assert_eq!(bench.nominal.gravity_along_extension, 0.0);
 }
 
 #[test]
@@ -83,16 +79,14 @@ force_n = -12
 gain = 1.05
 ";
     let bench = read(&(RIG.to_owned() + effects), "kind = \"free\"\n", LOAD_CELL).unwrap();
-    let LoadScenario::Contact {
-        contact, position, ..
-    } = bench.load
-    else {
+    let LoadScenario::Contact { position, .. } = bench.load else {
         panic!("{:?}", bench.load);
     };
+    let contact = bench.nominal.contact;
     assert_eq!(contact.law, ContactLaw::Hertz { stiffness: 2e7 });
     assert_eq!((position, contact.surface_offset), (0.02, 0.001));
-    assert_eq!(bench.device.parameters.axial_load.force, -12.0);
-    assert_eq!(bench.sensor_errors.force_gain, 1.05);
+    assert_eq!(bench.nominal.device.axial_load.force, -12.0);
+    assert_eq!(bench.nominal.sensors.force_gain, 1.05);
 }
 
 #[test]

@@ -9,6 +9,7 @@ use super::{MINIMAL, read_any, scenarios};
 use crate::device::DeviceParameters;
 use crate::physics::gas_process::GasProcess;
 use crate::physics::valve::ValvePosition;
+use crate::plant::ContactParameters;
 
 /// Every scenario file shipped, by name.
 fn shipped() -> Vec<String> {
@@ -148,8 +149,8 @@ fn locked_tool_is_misplaced_part_but_for_the_lock() {
 #[test]
 fn the_device_model_is_the_device_of_the_issue() {
     let model = scenarios().join("../models/device.toml");
-    let device = load_with_overrides(&model, None, true).unwrap();
-    let parameters = &device.parameters;
+    let (device, plant) = load_with_overrides(&model, None, true).unwrap();
+    let parameters = &plant.device;
     assert_eq!(*parameters, DeviceParameters::default());
     assert!((3e5 * parameters.areas().extending - 482.5).abs() < 0.1);
     assert_eq!(
@@ -179,33 +180,34 @@ fn the_device_model_is_the_device_of_the_issue() {
     );
     assert_eq!(parameters.gas_process, GasProcess::Isothermal);
     assert_eq!(parameters.hose, None);
-    assert_eq!((device.tool_centre, device.tool_radius), (0.15, 0.005));
+    let mounting = plant.mounting;
+    assert_eq!((mounting.tool_centre, mounting.tool_radius), (0.15, 0.005));
     assert_eq!(
         (
-            device.moving_centre_of_mass,
-            device.moving_radius_of_gyration
+            mounting.moving_centre_of_mass,
+            mounting.moving_radius_of_gyration
         ),
         (0.1, 0.05)
     );
     assert!(!device.locked && device.ideal);
     // A device that exists has its seals and its heat besides, and no more.
-    let real = load_device(&model).unwrap();
+    let (real, plant) = load_device(&model).unwrap();
     assert!(!real.ideal);
-    let seals = real.parameters.seal_friction;
+    let seals = plant.device.seal_friction;
     assert_eq!(
         (seals.coulomb, seals.static_force, seals.viscous),
         (10.0, 14.0, 50.0)
     );
     assert_eq!(
-        real.parameters.gas_process,
+        plant.device.gas_process,
         GasProcess::WallHeat { conductance: 0.5 }
     );
     let without = DeviceParameters {
-        seal_friction: parameters.seal_friction,
-        gas_process: parameters.gas_process,
-        ..real.parameters
+        seal_friction: DeviceParameters::default().seal_friction,
+        gas_process: DeviceParameters::default().gas_process,
+        ..plant.device
     };
-    assert_eq!(without, *parameters);
+    assert_eq!(without, DeviceParameters::default());
 }
 
 #[test]
@@ -219,11 +221,11 @@ fn what_a_scenario_gives_stands_before_what_makes_its_device_ideal() {
         Ok::<_, ScenarioError>(cell)
     };
     let cell = with("ideal = true\n[device.override]\nseal_static_force_n = 3").unwrap();
-    let seals = cell.device.parameters.seal_friction;
+    let seals = cell.nominal.device.seal_friction;
     assert_eq!((seals.coulomb, seals.static_force), (0.0, 3.0));
-    assert_eq!((cell.contact.stiffness, cell.contact.damping), (1.5e5, 4e2));
+    assert_eq!(cell.nominal.contact, ContactParameters::linear(1.5e5, 4e2));
     let real = with("").unwrap();
-    assert_eq!((real.contact.stiffness, real.contact.damping), (8.5e5, 2e2));
+    assert_eq!(real.nominal.contact, ContactParameters::linear(8.5e5, 2e2));
     // The breakaway force that makes it ideal stands nowhere, so that it cannot be pointed at.
     let message = with("ideal = true\n[device.override]\nseal_coulomb_force_n = 3")
         .unwrap_err()

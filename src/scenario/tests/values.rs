@@ -9,6 +9,7 @@ use super::super::{
     Misplacement, ObstacleShape, ProcessScenario, ServoScenario, SimulationScenario,
 };
 use super::{MINIMAL, edited, read, scenarios};
+use crate::plant::ContactParameters;
 
 #[test]
 fn every_key_of_the_process_reaches_its_field() {
@@ -284,10 +285,9 @@ fn every_other_key_reaches_its_field() {
          [expect]\nb_n = {{ max = 2 }}\na_n = {{ min = -1, max = 1 }}\n"
     );
     let scenario = read(&text).unwrap();
-    let contact = scenario.contact;
-    assert_eq!(contact.stiffness, 2e5);
-    assert_eq!(contact.damping, 300.0);
-    assert_eq!(contact.friction, 0.3);
+    let nominal = &scenario.nominal;
+    assert_eq!(nominal.contact, ContactParameters::linear(2e5, 300.0));
+    assert_eq!(nominal.cell.friction, 0.3);
     let simulation = SimulationScenario {
         step: 5e-4,
         substeps: 4,

@@ -18,7 +18,7 @@ impl Simulation<'_> {
         force: f64,
         time: f64,
     ) -> Result<(), SimulationError> {
-        let radius = self.cell.setup.scenario.device.tool_radius;
+        let radius = self.cell.setup.scenario.nominal.mounting.tool_radius;
         if reference.phase == Phase::Follow && off > radius {
             return Err(SimulationError::SlippedOff {
                 time,
@@ -132,7 +132,7 @@ impl Simulation<'_> {
         time: f64,
     ) -> Result<(), SimulationError> {
         let scenario = &self.cell.setup.scenario;
-        let full_stroke = scenario.device.parameters.full_stroke;
+        let full_stroke = scenario.nominal.device.full_stroke;
         if scenario.device.locked {
             return Ok(());
         }

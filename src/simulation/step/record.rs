@@ -38,7 +38,7 @@ impl Simulation<'_> {
     ) {
         let mut read = self.errors.read(time, there, acceleration);
         if let Some(moment) = moment {
-            read.add(self.cell.setup.plant.reading_terms(&moment));
+            read.add(self.cell.setup.actual.reading_terms(&moment));
         }
         self.readings = self.sensors.measure(
             time,
@@ -73,19 +73,19 @@ impl Simulation<'_> {
         set_pressure: f64,
     ) -> Result<(), SimulationError> {
         let (cell, n) = (self.cell, self.slide());
+        let actual = &cell.setup.actual;
         let time = self.steps as f64 * cell.setup.scenario.simulation.step;
         let motion = self.device.motion;
         let stroke = motion.stroke;
         let (load, moment) = self.load(time, &self.touches);
         let further = load.term_force(0.0, motion);
-        let added_outlet =
-            moment.map_or(0.0, |now| cell.setup.plant.term(Port::OutletPressure, &now));
+        let added_outlet = moment.map_or(0.0, |now| actual.term(Port::OutletPressure, &now));
         let (normal_force, normal, load) = Self::pressing(&load, motion);
         let cut = self.cutting.as_ref().map(|cutting| cutting.reading().force);
         let friction = self.world.contact().friction + cut.unwrap_or_default();
         let force_on_part = -(normal + friction);
         let normal = normal.normalize_or_zero();
-        let gas = &cell.setup.scenario.device.parameters.gas;
+        let gas = &actual.device.gas;
         let pressures = cell.device.pressures(&self.device.state, stroke);
         let mass = cell.device.parameters().moving_mass;
         if !cell.setup.scenario.device.locked {
@@ -175,7 +175,7 @@ impl Simulation<'_> {
                 None => self.world.positions()[axis],
                 Some(motor) => motor.angle,
             };
-            let offset = self.cell.setup.plant.cell.encoder_offset[axis];
+            let offset = self.cell.setup.actual.cell.encoder_offset[axis];
             self.encoders[axis] = angle + offset + noise * self.encoder_noise.normal();
         }
     }
@@ -186,7 +186,7 @@ impl Simulation<'_> {
         let mut links = vec![DPose3::IDENTITY; self.laws.len()];
         self.world.link_poses(&mut links);
         self.frames.links.push(links);
-        let radius = self.cell.setup.scenario.device.tool_radius;
+        let radius = self.cell.setup.scenario.nominal.mounting.tool_radius;
         self.frames
             .contact_points
             .push(self.world.tool_centre() - normal * radius);

@@ -22,6 +22,7 @@ pub(super) fn servo(cell: &Cell, inertias: &[f64]) -> Servo {
     let parameters = &cell.setup.scenario.arm.servo;
     Servo::new(
         &cell.setup.arm.chain,
+        &cell.setup.actual.cell.joint_friction,
         inertias,
         &ServoParameters {
             natural_frequency: parameters.natural_frequency * std::f64::consts::TAU,
@@ -34,7 +35,11 @@ pub(super) fn servo(cell: &Cell, inertias: &[f64]) -> Servo {
 /// A watch over what must not meet, the part where it really is.
 pub(super) fn clearance(cell: &Cell, positions: &[f64]) -> ClearanceWatch {
     // Where effects have put the part, its tilt apart: it is none about the middle of the edge.
-    let aside = cell.setup.plant.cell.aside(&cell.middle, cell.middle.point);
+    let aside = cell
+        .setup
+        .actual
+        .cell
+        .aside(&cell.middle, cell.middle.point);
     let part = DPose3::from_translation(aside) * cell.setup.part.world_from_part;
     let standing = cell.setup.collision.with_part_at(part);
     ClearanceWatch::new(standing, &to_array(positions))
@@ -64,17 +69,12 @@ pub(super) fn motors(cell: &Cell, inertias: &[f64], positions: &mut [f64]) -> Ve
         &still,
         &mut torques,
     );
-    let motor = |(axis, parameters): (usize, &Option<_>)| {
+    let motor = |axis: usize| {
         let inertia = ROTOR_SHARE * inertias[axis];
-        let parameters = (*parameters)?;
-        let (motor, link) = Motor::at_rest(parameters, inertia, positions[axis], torques[axis]);
+        let spring = cell.setup.actual.cell.transmission(axis)?;
+        let (motor, link) = Motor::at_rest(spring, inertia, positions[axis], torques[axis]);
         positions[axis] = link;
         Some(motor)
     };
-    cell.setup
-        .transmissions
-        .iter()
-        .enumerate()
-        .map(motor)
-        .collect()
+    (0..inertias.len()).map(motor).collect()
 }

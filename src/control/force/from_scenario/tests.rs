@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::super::test_plant::{CONTACT, device};
 use super::*;
+use crate::plant::ContactParameters;
 use crate::scenario::{BenchScenario, load_bench};
 
 fn moving_surface() -> BenchScenario {
@@ -13,11 +14,21 @@ fn moving_surface() -> BenchScenario {
 
 /// Result of a law on the bench of the moving surface.
 fn built(law: ForceLaw) -> Result<ForceController, ScenarioError> {
-    let bench = moving_surface();
+    let mut bench = moving_surface();
     let mut choice = bench.controller;
     choice.law = law;
-    let (device, sensing) = (&bench.device.parameters, &bench.sensing);
-    ForceController::of_scenario(&choice, device, sensing, Some(CONTACT), bench.step)
+    bench.nominal.contact = ContactParameters::linear(CONTACT.stiffness, CONTACT.damping);
+    let pressing = Pressing {
+        force: 0.0,
+        share: 1.0,
+    };
+    ForceController::of_scenario(
+        &choice,
+        &bench.nominal,
+        &bench.sensing,
+        Some(pressing),
+        bench.step,
+    )
 }
 
 fn proportional_integral(gain: f64, integral: f64) -> ForceLaw {

@@ -36,6 +36,7 @@ fn plant() -> PlantParameters {
             runout: Periodic::NONE,
             waviness: Periodic::NONE,
         },
+        mounting: Mounting::default(),
         cell: CellParameters::RIGID,
         sensors: SensorErrors::NONE,
         latent: None,
