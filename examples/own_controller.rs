@@ -41,7 +41,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut cell = Cell::load(&folder.join("scenarios/plate_edge.toml"))?;
     cell.controller = ForceController::Own(Box::new(Integrating {
-        mass: cell.device.parameters().moving_mass,
+        mass: cell.setup.actual.device.moving_mass,
         area: 1.6e-3,
         gain: 0.02, // each 20 ms, as the scenario has it
         correction: 0.0,

@@ -132,8 +132,11 @@ impl Press {
         let mut load = self.load(stroke);
         load.axial.0[0] = mass * self.carried + force;
         let motion = PistonMotion { stroke, speed };
-        let mut device =
-            RunningDevice::new(&self.plant, &self.device, (motion, self.state.clone()));
+        let mut device = RunningDevice::new(
+            &self.plant,
+            Device::new(&self.plant.device),
+            (motion, self.state.clone()),
+        );
         let mut pressed = Vec::new();
         let moved = slide::advance(&mut device, &load, 0.0, (STEP, 1), &mut pressed);
         self.state = device.state;

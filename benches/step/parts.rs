@@ -56,7 +56,7 @@ fn rigid_bodies(criterion: &mut Criterion, cell: &Cell) {
 
 fn device(criterion: &mut Criterion, cell: &Cell) {
     let scenario = &cell.setup.scenario;
-    let device = &cell.device;
+    let device = &Device::new(&cell.setup.actual.device);
     let pressure = 1e5;
     let stroke = scenario.process.working_stroke;
     let mut group = criterion.benchmark_group("device");

@@ -33,7 +33,6 @@ use crate::arm::chain::MAX_JOINTS;
 use crate::arm::kinematics::{jacobian_at, link_poses};
 use crate::collision::Meeting;
 use crate::control::force::{ForceController, Pressing};
-use crate::device::Device;
 use crate::path::Plan;
 use crate::plant::{EdgeStation, Relief};
 use crate::scenario::{Scenario, load};
@@ -46,8 +45,6 @@ pub struct Cell {
     pub resolution: Resolution,
     /// The middle of the followed edge, where the part is believed.
     pub middle: EdgeStation,
-    /// The device.
-    pub device: Device,
     /// Controller of the regulator's pressure, as it is at the start.
     pub controller: ForceController,
     /// The job.
@@ -106,8 +103,6 @@ impl Cell {
         let plan = Plan::new(&request).map_err(refused)?;
         let spread = setup.scenario.arm.mass_spread;
         let estimated = EstimatedArm::of(&setup.arm.estimated, spread, &request, &plan);
-        let actual = &setup.actual;
-        let device = Device::new(actual.with_friction_of_terms(actual.device.clone()));
         let notes = &mut setup.notes;
         notes.extend(estimated.as_ref().map(EstimatedArm::note));
         notes.extend(plan.notes.iter().cloned());
@@ -122,7 +117,6 @@ impl Cell {
             setup,
             resolution,
             middle,
-            device,
             controller,
             plan,
             axial_share,

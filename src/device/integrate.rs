@@ -8,6 +8,9 @@
 //!
 //! Chosen by measurement over adaptive stiff solvers: benches/solver, docs/SPEED.md.
 
+use std::borrow::Borrow;
+
+use super::DeviceParameters;
 use super::load::{Load, PistonMotion};
 use super::pneumatics::Device;
 use super::state::{AirState, DeviceState, Disturbance, EnergyLedger};
@@ -84,8 +87,8 @@ pub(super) struct Mode {
 }
 
 /// A sub-step's surroundings.
-pub(super) struct Surroundings<'a, L> {
-    pub(super) device: &'a Device,
+pub(super) struct Surroundings<'a, L, P> {
+    pub(super) device: &'a Device<P>,
     load: &'a L,
     pub(super) valve: ValvePosition,
     pub(super) trajectory: OutletTrajectory,
@@ -96,7 +99,7 @@ pub(super) struct Surroundings<'a, L> {
     pub(super) disturbance: Disturbance,
 }
 
-impl Device {
+impl<P: Borrow<DeviceParameters>> Device<P> {
     /// Returns the impulses of the step.
     pub(super) fn integrate<L: Load, const LEDGER: bool>(
         &self,
@@ -107,10 +110,10 @@ impl Device {
         dt: f64,
         substeps: usize,
     ) -> Impulses {
-        let regulator = &self.parameters.regulator;
+        let regulator = &self.parameters().regulator;
         let set_pressure = set_pressure + state.disturbance.set_pressure;
         state.regulator.command(regulator, set_pressure);
-        let delay = self.parameters.switching_delay;
+        let delay = self.parameters().switching_delay;
         state.spool.command(state.valve, delay);
         let longest = (dt / substeps as f64)
             .min(self.longest_substep(load, state, *motion, dt))
@@ -148,8 +151,8 @@ impl Device {
             state.seal_deflection = surroundings.deflection;
             state.regulator.follow(regulator, &trajectory);
             state.spool.advance(trajectory.duration);
-            if let Some(reservoir) = &self.parameters.supply_reservoir {
-                let gas = &self.parameters.gas;
+            if let Some(reservoir) = &self.parameters().supply_reservoir {
+                let gas = &self.parameters().gas;
                 let stored = reservoir.pressure(gas, flow.air.reservoir_mass);
                 state.regulator.starve(stored - gas.atmosphere);
             }
@@ -177,7 +180,7 @@ impl Device {
             return air;
         }
         // What the valve may let in during the step.
-        let outlet = self.parameters.gas.atmosphere + state.regulator.outlet;
+        let outlet = self.parameters().gas.atmosphere + state.regulator.outlet;
         let spring = self.spring_rate(&state.air, volumes, outlet);
         let fastest = spring.max(self.piston_rates.within(load, motion, dt));
         let swing = load.swing();
@@ -188,7 +191,7 @@ impl Device {
         }
         let outside = load.force(0.0, motion, load.touches(0.0, motion));
         let force = self.piston_force(state, motion) + outside;
-        let acceleration = force / self.parameters.moving_mass;
+        let acceleration = force / self.parameters().moving_mass;
         let speed = motion.speed.abs() + acceleration.abs() * dt;
         let ease = (SWIFT / speed).sqrt().sqrt();
         allowed.min(mechanical * ease.clamp(1.0, (SLOW_LIMIT / swing).max(1.0)))
@@ -217,7 +220,7 @@ fn next_look([a, b]: [[f64; 2]; 2], widest: f64, whole: f64) -> f64 {
     }
 }
 
-impl<L: Load> Surroundings<'_, L> {
+impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
     /// Advances over the first sub-step of a trajectory. Where the outlet leaves the chamber's pressure, the flow begins with the root of time, which a step
     /// of whatever order meets with an error of its length to the power 1.5 alone: that sub-step is halved towards its start.
     fn begin<const LEDGER: bool>(&mut self, flow: &mut Flow, start: f64, h: f64) {
@@ -234,7 +237,7 @@ impl<L: Load> Surroundings<'_, L> {
     /// or than the orifice passes in proportion.
     #[inline]
     fn halvings(&self, flow: &Flow, h: f64) -> i32 {
-        let parameters = &self.device.parameters;
+        let parameters = self.device.parameters();
         let travel = self.trajectory.travel(h);
         let outlet = parameters.gas.atmosphere + self.trajectory.start() + self.disturbance.outlet;
         let proportional = (1.0 - LAMINAR_RATIO) * outlet;
@@ -299,7 +302,7 @@ impl<L: Load> Surroundings<'_, L> {
     fn accept(&mut self, flow: &mut Flow, next: Flow, [start, length]: [f64; 2]) {
         self.load.note(start, length, [flow.motion, next.motion]);
         let device = self.device;
-        if L::MOVES && device.parameters.seal_friction.is_dry() {
+        if L::MOVES && device.parameters().seal_friction.is_dry() {
             let ends = [&*flow, &next].map(|flow| (&flow.air, flow.motion.stroke));
             let seals = device.seals_over(ends, self.disturbance.friction);
             let moved = next.motion.stroke - flow.motion.stroke;
@@ -318,7 +321,7 @@ impl<L: Load> Surroundings<'_, L> {
                 direction: 0,
             };
         }
-        let dry = self.device.parameters.seal_friction.is_dry();
+        let dry = self.device.parameters().seal_friction.is_dry();
         Mode {
             touching: self.load.touches(time, motion),
             stop: self.device.stop_at(motion),
@@ -334,7 +337,7 @@ impl<L: Load> Surroundings<'_, L> {
 
     /// One Runge-Kutta step.
     fn step<const LEDGER: bool>(&self, start: &Flow, time: f64, h: f64, mode: Mode) -> Flow {
-        if let Some(hose) = &self.device.parameters.hose {
+        if let Some(hose) = &self.device.parameters().hose {
             return self.line_step::<LEDGER>(hose, start, time, h, mode);
         }
         let outlet = |t: f64| self.outlet(t);
@@ -363,7 +366,7 @@ impl<L: Load> Surroundings<'_, L> {
         mode: Mode,
     ) -> Flow {
         let device = self.device;
-        let parameters = &device.parameters;
+        let parameters = device.parameters();
         let motion = flow.motion;
         let atmosphere = parameters.gas.atmosphere;
         let air = device.air_rates::<LEDGER>(

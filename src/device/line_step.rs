@@ -4,6 +4,9 @@
 //! mass solves one equation, monotonic in the pressure; a reservoir that no longer holds the regulator's pressure drives the line, and is solved with it. Its implicit half is stable however fast the line is, damps what is faster than the
 //! sub-step, and ends on its last stage, so that a fast line comes out where inflow and outflow balance.
 
+use std::borrow::Borrow;
+
+use super::DeviceParameters;
 use super::integrate::{Flow, Mode, Surroundings};
 use super::load::Load;
 use super::state::AirState;
@@ -70,7 +73,7 @@ const IMPLICIT: [[f64; 5]; 6] = [
     ],
 ];
 
-impl<L: Load> Surroundings<'_, L> {
+impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
     /// One step of the pair.
     pub(super) fn line_step<const LEDGER: bool>(
         &self,
@@ -147,11 +150,11 @@ impl Feed {
     }
 }
 
-impl<L: Load> Surroundings<'_, L> {
+impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
     /// Solution of `feed = held + share * rates(feed)` at an outlet pressure of the regulator [Pa gauge] through a valve's supply orifice.
     fn feed(&self, hose: &Hose, flow: &Flow, outlet: f64, (held, share): (Feed, f64)) -> Feed {
         let device = self.device;
-        let gas = &device.parameters.gas;
+        let gas = &device.parameters().gas;
         let fed = self.valve.supplied();
         let volumes = [0, 1].map(|i| device.chambers[i].volume(flow.motion.stroke));
         let after = device.pressures_of(&flow.air, volumes)[fed];
@@ -190,7 +193,7 @@ impl<L: Load> Surroundings<'_, L> {
             }
         };
         let before = gas.atmosphere + outlet;
-        let Some(reservoir) = &device.parameters.supply_reservoir else {
+        let Some(reservoir) = &device.parameters().supply_reservoir else {
             return fed(before, 0.0);
         };
         let drawn = |before: f64| {

@@ -1,11 +1,14 @@
 //! Forces on the piston besides that of the gas: cushions, axial load, seals under pressure; and all of it together.
 
+use std::borrow::Borrow;
+
+use super::DeviceParameters;
 use super::load::PistonMotion;
 use super::pneumatics::Device;
 use super::state::{AirState, DeviceState};
 use crate::physics::seal_friction::SealFriction;
 
-impl Device {
+impl<P: Borrow<DeviceParameters>> Device<P> {
     /// Force of the whole device on the piston along extension [N]: gas, seals, end stops, cushions and axial load.
     pub fn piston_force(&self, state: &DeviceState, motion: PistonMotion) -> f64 {
         self.gas_force(state, motion.stroke)
@@ -22,12 +25,12 @@ impl Device {
 
     /// Force of the axial load along extension [N] at a stroke [m].
     pub fn axial_force(&self, stroke: f64) -> f64 {
-        self.parameters.axial_load.force_at(stroke)
+        self.parameters().axial_load.force_at(stroke)
     }
 
     /// Which end cushion is being pressed: -1 the retracted one, 1 the extended one, 0 none.
     pub(super) fn cushion_at(&self, motion: PistonMotion) -> i8 {
-        let parameters = &self.parameters;
+        let parameters = self.parameters();
         parameters
             .end_cushioning
             .pressed(parameters.full_stroke, motion.stroke, motion.speed)
@@ -35,7 +38,7 @@ impl Device {
 
     /// Damping of an end's cushion [N s/m], as it holds while it is pressed.
     pub(super) fn cushion_damping(&self, end: i8, stroke: f64) -> f64 {
-        let parameters = &self.parameters;
+        let parameters = self.parameters();
         parameters
             .end_cushioning
             .damping_of(end, parameters.full_stroke, stroke)
@@ -52,7 +55,7 @@ impl Device {
         states: [(&AirState, f64); N],
         further: f64,
     ) -> SealFriction {
-        let seals = &self.parameters.seal_friction;
+        let seals = &self.parameters().seal_friction;
         if seals.pressure_coefficient == 0.0 {
             return seals.with(further);
         }

@@ -1,5 +1,7 @@
 //! The device's equations put together: flows between its parts and the force on its piston, at a state.
 
+use std::borrow::Borrow;
+
 use super::leaks::LeakFlows;
 use super::load::{PistonMotion, Predicted};
 use super::rates::{PistonRates, longest_line_step};
@@ -30,10 +32,10 @@ pub struct DeviceForce {
     pub stiffness: f64,
 }
 
-/// A device: parameters with all that follows from them, and no state.
+/// A device: parameters, its own or borrowed, with all that follows from them, and no state.
 #[derive(Debug, Clone)]
-pub struct Device {
-    pub(super) parameters: DeviceParameters,
+pub struct Device<P = DeviceParameters> {
+    parameters: P,
     pub(super) flow: FlowFunction,
     pub(super) chambers: [Chamber; 2],
     pub(super) areas: PistonAreas,
@@ -57,34 +59,33 @@ pub(super) struct AirRates {
     pub pressures: [f64; 2],
 }
 
-impl Device {
+impl<P: Borrow<DeviceParameters>> Device<P> {
     /// Prepares a device.
-    pub fn new(parameters: DeviceParameters) -> Self {
-        let gas = &parameters.gas;
+    pub fn new(parameters: P) -> Self {
+        let own: &DeviceParameters = parameters.borrow();
+        let gas = &own.gas;
         let flow = FlowFunction::new(gas);
-        let valve = parameters.valve();
+        let valve = own.valve();
         let rt = gas.specific_gas_constant * gas.temperature;
         let rate_volume = |conductance: f64| conductance * rt.sqrt() * flow.laminar_slope();
-        let leakage = &parameters.leakage;
+        let leakage = &own.leakage;
         // A leak between the chambers works on both.
-        let leaks =
-            parameters.discharge_coefficient * (2.0 * leakage.cross_piston + leakage.external);
+        let leaks = own.discharge_coefficient * (2.0 * leakage.cross_piston + leakage.external);
         let port = valve.supply_conductance.max(valve.exhaust_conductance);
         Self {
-            chambers: parameters.chambers(),
-            areas: parameters.areas(),
-            piston_rates: PistonRates::new(&parameters),
-            chamber_rate_volume: parameters.stiffest_exponent() * rate_volume(port + leaks),
-            leak_rate: parameters.stiffest_exponent()
-                * rate_volume(parameters.discharge_coefficient),
-            reservoir_rate: match (&parameters.supply_reservoir, &parameters.hose) {
+            chambers: own.chambers(),
+            areas: own.areas(),
+            piston_rates: PistonRates::new(own),
+            chamber_rate_volume: own.stiffest_exponent() * rate_volume(port + leaks),
+            leak_rate: own.stiffest_exponent() * rate_volume(own.discharge_coefficient),
+            reservoir_rate: match (&own.supply_reservoir, &own.hose) {
                 (Some(reservoir), None) => {
                     reservoir.rate(gas) + rate_volume(valve.supply_conductance) / reservoir.volume
                 }
                 // With a line it is implicit.
                 _ => 0.0,
             },
-            line_substep: longest_line_step(&parameters, rate_volume(valve.supply_conductance)),
+            line_substep: longest_line_step(own, rate_volume(valve.supply_conductance)),
             flow,
             valve,
             parameters,
@@ -93,20 +94,20 @@ impl Device {
 
     /// The parameters.
     pub fn parameters(&self) -> &DeviceParameters {
-        &self.parameters
+        self.parameters.borrow()
     }
 
     /// State at rest at a stroke [m], chamber 1 at the regulated pressure [Pa gauge] and chamber 2 at the atmosphere or at the opposing pressure, a reservoir full.
     pub fn at_rest(&self, stroke: f64, set_pressure: f64) -> DeviceState {
-        let gas = &self.parameters.gas;
-        let mut regulator = RegulatorState::at_rest(&self.parameters.regulator, set_pressure);
-        if let Some(reservoir) = &self.parameters.supply_reservoir {
+        let gas = &self.parameters().gas;
+        let mut regulator = RegulatorState::at_rest(&self.parameters().regulator, set_pressure);
+        if let Some(reservoir) = &self.parameters().supply_reservoir {
             regulator.starve(reservoir.full_pressure - gas.atmosphere);
         }
-        let behind = gas.atmosphere + self.parameters.opposing_pressure;
+        let behind = gas.atmosphere + self.parameters().opposing_pressure;
         let pressures = [gas.atmosphere + regulator.outlet, behind];
         let masses = [0, 1].map(|i| gas.mass(pressures[i], self.chambers[i].volume(stroke)));
-        let hose = self.parameters.hose.as_ref();
+        let hose = self.parameters().hose.as_ref();
         let segment = hose.map_or(0.0, |h| gas.mass(pressures[0], h.segment_volume()));
         let mut upstream = [0.0; UPSTREAM];
         upstream[..hose.map_or(0, |h| h.segments() - 1)].fill(segment);
@@ -116,7 +117,7 @@ impl Device {
             hose_mass: hose.map_or(0.0, |h| gas.mass(pressures[0], h.last_volume())),
             upstream,
             reservoir_mass: self
-                .parameters
+                .parameters()
                 .supply_reservoir
                 .map_or(0.0, |reservoir| reservoir.full_mass(gas)),
             ..AirState::default()
@@ -151,7 +152,7 @@ impl Device {
     /// Force of the seals on the piston along extension [N].
     pub fn seal_force(&self, state: &DeviceState, speed: f64) -> f64 {
         -self
-            .parameters
+            .parameters()
             .seal_friction
             .force(state.seal_deflection, speed)
     }
@@ -166,8 +167,8 @@ impl Device {
 
     /// Internal energy of the air in both chambers [J].
     pub fn internal_energy(&self, state: &DeviceState) -> f64 {
-        let gas = &self.parameters.gas;
-        match self.parameters.gas_process {
+        let gas = &self.parameters().gas;
+        match self.parameters().gas_process {
             GasProcess::Isothermal => {
                 let mass = state.air.masses[0] + state.air.masses[1];
                 mass * gas.specific_heat_volume() * gas.temperature
@@ -199,7 +200,7 @@ impl Device {
             seals.deflection_after(state.seal_deflection, motion.speed * dt, motion.speed);
         let stop_damping = match self.stop_at(motion) {
             0 => 0.0,
-            _ => self.parameters.end_stop.damping,
+            _ => self.parameters().end_stop.damping,
         };
         let cushion_damping = self.cushion_damping(self.cushion_at(motion), motion.stroke);
         let travel = motion.speed * dt;
@@ -218,7 +219,7 @@ impl Device {
             force: impulse / dt + besides_gas,
             damping: stop_damping + cushion_damping + seals.viscous,
             stiffness: seals.tangent_stiffness(deflection, motion.speed)
-                + self.parameters.axial_load.return_stiffness,
+                + self.parameters().axial_load.return_stiffness,
         }
     }
 
@@ -251,13 +252,13 @@ impl Device {
 
     pub(super) fn gas_force_of(&self, pressures: [f64; 2]) -> f64 {
         self.areas
-            .gas_force(pressures[0], pressures[1], self.parameters.gas.atmosphere)
+            .gas_force(pressures[0], pressures[1], self.parameters().gas.atmosphere)
     }
 
     /// Which end stop pushes: -1 the retracted one, 1 the extended one, 0 none.
     pub(super) fn stop_at(&self, motion: PistonMotion) -> i8 {
-        let end_stop = &self.parameters.end_stop;
-        let beyond = motion.stroke - self.parameters.full_stroke;
+        let end_stop = &self.parameters().end_stop;
+        let beyond = motion.stroke - self.parameters().full_stroke;
         if end_stop.pushes(-motion.stroke, -motion.speed) {
             -1
         } else {
@@ -267,17 +268,17 @@ impl Device {
 
     /// Force of a stop along extension [N], as it holds while it pushes.
     pub(super) fn stop_force_of(&self, stop: i8, motion: PistonMotion) -> f64 {
-        let end_stop = &self.parameters.end_stop;
+        let end_stop = &self.parameters().end_stop;
         match stop {
             -1 => end_stop.linear(-motion.stroke, -motion.speed),
-            1 => -end_stop.linear(motion.stroke - self.parameters.full_stroke, motion.speed),
+            1 => -end_stop.linear(motion.stroke - self.parameters().full_stroke, motion.speed),
             _ => 0.0,
         }
     }
 
     pub(super) fn pressures_of(&self, air: &AirState, volumes: [f64; 2]) -> [f64; 2] {
-        let gas = &self.parameters.gas;
-        match self.parameters.gas_process {
+        let gas = &self.parameters().gas;
+        match self.parameters().gas_process {
             GasProcess::Isothermal => [
                 gas.pressure(air.masses[0], volumes[0]),
                 gas.pressure(air.masses[1], volumes[1]),
@@ -293,8 +294,8 @@ impl Device {
     }
 
     pub(super) fn temperature_of(&self, air: &AirState, chamber: usize) -> f64 {
-        let gas = &self.parameters.gas;
-        match self.parameters.gas_process {
+        let gas = &self.parameters().gas;
+        match self.parameters().gas_process {
             GasProcess::Isothermal => gas.temperature,
             GasProcess::WallHeat { .. } => {
                 air.energies[chamber] / (air.masses[chamber] * gas.specific_heat_volume())
@@ -312,7 +313,7 @@ impl Device {
         motion: PistonMotion,
         disturbance: &Disturbance,
     ) -> AirRates {
-        let parameters = &self.parameters;
+        let parameters = self.parameters();
         let gas = &parameters.gas;
         // Written out, here and in `pressures_of`: `map` is not inlined, and costs a tenth of a step.
         let [first, second] = &self.chambers;
@@ -388,17 +389,17 @@ impl Device {
     /// Flows of the leaks, of those besides the parameters' from areas [m2].
     #[inline(always)]
     fn leak_flows(&self, air: &AirState, pressures: [f64; 2], further: [f64; 2]) -> LeakFlows {
-        if self.parameters.leakage.is_none() && further == [0.0; 2] {
+        if self.parameters().leakage.is_none() && further == [0.0; 2] {
             return LeakFlows::default();
         }
         let chambers = [0, 1].map(|i| (pressures[i], self.temperature_of(air, i)));
-        LeakFlows::new(&self.parameters, &self.flow, chambers, further)
+        LeakFlows::new(self.parameters(), &self.flow, chambers, further)
     }
 
     /// Flow into each segment of a line from an outlet pressure [Pa absolute] on [kg/s].
     #[inline(always)]
     fn line_flows(&self, hose: &Hose, air: &AirState, outlet: f64) -> [f64; UPSTREAM + 1] {
-        let gas = &self.parameters.gas;
+        let gas = &self.parameters().gas;
         let (mut into, mut previous, last) = ([0.0; UPSTREAM + 1], outlet, hose.segments() - 1);
         for (j, flow) in into.iter_mut().enumerate().take(last + 1) {
             let pressure = match j == last {
@@ -413,22 +414,22 @@ impl Device {
 
     /// Absolute pressure behind the exhaust orifice [Pa]: of a second regulator behind chamber 2, if there is one.
     fn behind(&self, valve: ValvePosition) -> f64 {
-        let atmosphere = self.parameters.gas.atmosphere;
+        let atmosphere = self.parameters().gas.atmosphere;
         match valve {
-            ValvePosition::Extend => atmosphere + self.parameters.opposing_pressure,
+            ValvePosition::Extend => atmosphere + self.parameters().opposing_pressure,
             ValvePosition::Retract => atmosphere,
         }
     }
 
     /// Conductance of the supply orifice with what is added to it [m2]: nothing flows through one of less than no area.
     pub(super) fn supply_conductance(&self, disturbance: &Disturbance) -> f64 {
-        let added = self.parameters.discharge_coefficient * disturbance.orifices[0];
+        let added = self.parameters().discharge_coefficient * disturbance.orifices[0];
         (self.valve.supply_conductance + added).max(0.0)
     }
 
     /// The same of the exhaust orifice [m2].
     fn exhaust_conductance(&self, disturbance: &Disturbance) -> f64 {
-        let added = self.parameters.discharge_coefficient * disturbance.orifices[1];
+        let added = self.parameters().discharge_coefficient * disturbance.orifices[1];
         (self.valve.exhaust_conductance + added).max(0.0)
     }
 
@@ -442,19 +443,19 @@ impl Device {
     /// Natural frequency of the piston on its two air springs [rad/s], the chambers at no less than a pressure [Pa absolute]:
     /// sqrt(sum of n p A^2/V over M), n the exponent of the gas's process.
     pub(super) fn spring_rate(&self, air: &AirState, volumes: [f64; 2], least: f64) -> f64 {
-        let exponent = self.parameters.stiffest_exponent();
+        let exponent = self.parameters().stiffest_exponent();
         let pressures = self.pressures_of(air, volumes);
         let stiffness = |i: usize| {
             exponent * pressures[i].max(least) * self.chambers[i].area.powi(2) / volumes[i]
         };
-        ((stiffness(0) + stiffness(1)) / self.parameters.moving_mass).sqrt()
+        ((stiffness(0) + stiffness(1)) / self.parameters().moving_mass).sqrt()
     }
 
     /// Rate at which the smallest volume of a step comes to the pressure beside it [1/s].
     pub(super) fn air_rate(&self, volumes: [f64; 2], disturbance: &Disturbance) -> f64 {
         let smallest = volumes[0].min(volumes[1]);
-        let gas = &self.parameters.gas;
-        let wall = match self.parameters.gas_process {
+        let gas = &self.parameters().gas;
+        let wall = match self.parameters().gas_process {
             GasProcess::Isothermal => 0.0,
             GasProcess::WallHeat { conductance } => {
                 conductance / (gas.mass(gas.atmosphere, smallest) * gas.specific_heat_volume())

@@ -34,7 +34,7 @@ impl PresentEffect {
     }
 }
 
-/// A model with effects, as a device, its contact and its sensors are made of it.
+/// A model with effects, of which a device, its contact and its sensors are made.
 pub fn actual(
     nominal: &Nominal<PlantParameters>,
     effects: &[PresentEffect],
@@ -43,6 +43,7 @@ pub fn actual(
         for effect in effects {
             effect.put_into(plant);
         }
+        plant.device = plant.device_under_terms().into_owned();
     })
 }
 

@@ -8,10 +8,8 @@
 //!
 //! d penetration of the tool beyond the surface [m], x_s where the surface stands along the stroke [m], o offset [m], a amplitude [m], f frequency [Hz].
 
-use std::f64::consts::TAU;
-use std::ops::Deref;
-
 use super::registry;
+use std::f64::consts::TAU;
 
 /// Force against penetration.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -161,9 +159,13 @@ impl ContactParameters {
         elastic + self.damping * rate
     }
 
-    /// Force [N] with nothing added to it.
+    /// Force at a penetration [m] and its rate [m/s] [N].
     pub fn force(&self, penetration: f64, rate: f64) -> f64 {
-        StepContact::plain(self).force(penetration, rate)
+        if penetration > 0.0 {
+            self.pushing(penetration, rate).max(0.0)
+        } else {
+            0.0
+        }
     }
 
     /// Stiffness [N/m] at a force [N].
@@ -182,57 +184,6 @@ impl ContactParameters {
         (self.stiffness_at(LARGE_FORCE) / mass)
             .sqrt()
             .max(self.damping / mass)
-    }
-}
-
-/// A contact over a step, with the stiffness that a term adds to it.
-#[derive(Debug, Clone, Copy)]
-pub struct StepContact<'a> {
-    parameters: &'a ContactParameters,
-    /// Stiffness beside that of its law [N/m].
-    pub added_stiffness: f64,
-}
-
-impl Deref for StepContact<'_> {
-    type Target = ContactParameters;
-
-    fn deref(&self) -> &ContactParameters {
-        self.parameters
-    }
-}
-
-impl<'a> StepContact<'a> {
-    /// The contact with nothing added.
-    pub fn plain(parameters: &'a ContactParameters) -> Self {
-        Self {
-            parameters,
-            added_stiffness: 0.0,
-        }
-    }
-
-    /// Force at a penetration [m] and its rate [m/s] as it holds while it pushes [N].
-    pub fn pushing(&self, penetration: f64, rate: f64) -> f64 {
-        self.parameters.pushing(penetration, rate) + self.added_stiffness * penetration
-    }
-
-    /// Whether it pushes.
-    pub fn pushes(&self, penetration: f64, rate: f64) -> bool {
-        penetration > 0.0 && self.pushing(penetration, rate) > 0.0
-    }
-
-    /// Force [N].
-    pub fn force(&self, penetration: f64, rate: f64) -> f64 {
-        if penetration > 0.0 {
-            self.pushing(penetration, rate).max(0.0)
-        } else {
-            0.0
-        }
-    }
-
-    /// Fastest rate of a mass [kg] on it [1/s].
-    pub fn rate(&self, mass: f64) -> f64 {
-        let own = self.parameters.rate(mass);
-        (own * own + self.added_stiffness.max(0.0) / mass).sqrt()
     }
 }
 

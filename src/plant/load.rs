@@ -12,7 +12,7 @@
 
 use glam::DVec3;
 
-use super::contact::{ContactParameters, StepContact};
+use super::contact::ContactParameters;
 use super::contact_friction::AxialFriction;
 use super::cubic::Cubic;
 use super::hold::{HELD_SWING, Hold};
@@ -61,8 +61,10 @@ impl Touch {
 /// Load on a piston over a step.
 #[derive(Debug, Clone, Copy)]
 pub struct PistonLoad<'a> {
-    /// Law between tool and part.
-    pub(super) contact: StepContact<'a>,
+    /// Contact between tool and part.
+    contact: &'a ContactParameters,
+    /// Stiffness that a term adds to it [N/m].
+    pub(super) added_stiffness: f64,
     /// Moving mass [kg].
     mass: f64,
     /// Where the tool touches the part, or is about to.
@@ -94,7 +96,8 @@ impl<'a> PistonLoad<'a> {
         start: f64,
     ) -> Self {
         Self {
-            contact: StepContact::plain(contact),
+            contact,
+            added_stiffness: 0.0,
             mass,
             touches,
             start,
@@ -136,7 +139,15 @@ impl<'a> PistonLoad<'a> {
     /// Force at a touch [N].
     pub fn normal_force(&self, touch: &Touch, time: f64, motion: PistonMotion) -> f64 {
         let (penetration, rate) = self.penetration(touch, time, motion);
-        self.contact.force(penetration, rate)
+        match penetration > 0.0 {
+            true => self.pushing(penetration, rate).max(0.0),
+            false => 0.0,
+        }
+    }
+
+    /// Force at a penetration [m] and its rate [m/s] as it holds while it pushes [N].
+    fn pushing(&self, penetration: f64, rate: f64) -> f64 {
+        self.contact.pushing(penetration, rate) + self.added_stiffness * penetration
     }
 
     /// Force of the tool on the workpiece, of all touches [N].
@@ -213,7 +224,7 @@ impl Load for PistonLoad<'_> {
             // As it holds while it pushes, so that the law is smooth over a sub-step.
             [touch] => {
                 let (penetration, rate) = self.penetration(touch, time, motion);
-                self.axial_share(touch) * self.contact.pushing(penetration, rate)
+                self.axial_share(touch) * self.pushing(penetration, rate)
             }
             several => several
                 .iter()
@@ -225,7 +236,7 @@ impl Load for PistonLoad<'_> {
     fn touches(&self, time: f64, motion: PistonMotion) -> bool {
         self.touches.iter().any(|touch| {
             let (penetration, rate) = self.penetration(touch, time, motion);
-            self.contact.pushes(penetration, rate)
+            penetration > 0.0 && self.pushing(penetration, rate) > 0.0
         })
     }
 
@@ -249,7 +260,8 @@ impl Load for PistonLoad<'_> {
     }
 
     fn rate(&self) -> f64 {
-        self.contact.rate(self.mass)
+        let own = self.contact.rate(self.mass);
+        (own * own + self.added_stiffness.max(0.0) / self.mass).sqrt()
     }
 
     fn swing(&self) -> f64 {

@@ -21,13 +21,6 @@ impl<M: Clone> Nominal<M> {
     }
 }
 
-impl<M> Actual<M> {
-    /// The description itself.
-    pub fn into_inner(self) -> M {
-        self.0
-    }
-}
-
 impl<M> Deref for Nominal<M> {
     type Target = M;
 

@@ -5,14 +5,14 @@ use super::moment::Moment;
 use super::parameters::PlantParameters;
 use super::port::Port;
 use super::terms::ForceTerms;
-use crate::device::{Device, DeviceState, PistonMotion};
+use crate::device::{Device, DeviceParameters, DeviceState, PistonMotion};
 
 /// A device that runs.
 #[derive(Debug, Clone)]
 pub struct RunningDevice<'a> {
     plant: &'a PlantParameters,
     /// The device.
-    pub device: &'a Device,
+    pub device: Device<&'a DeviceParameters>,
     /// Its state.
     pub state: DeviceState,
     /// Motion of its piston.
@@ -27,7 +27,7 @@ impl<'a> RunningDevice<'a> {
     /// As it starts.
     pub fn new(
         plant: &'a PlantParameters,
-        device: &'a Device,
+        device: Device<&'a DeviceParameters>,
         (motion, state): (PistonMotion, DeviceState),
     ) -> Self {
         Self {
@@ -65,7 +65,7 @@ impl<'a> RunningDevice<'a> {
             contact_force: load.contact_force(0.0, self.motion),
         };
         load.stroke.0[0] += plant.term(Port::Surface, &moment);
-        load.contact.added_stiffness = plant.term(Port::ContactStiffness, &moment);
+        load.added_stiffness = plant.term(Port::ContactStiffness, &moment);
         load.terms = ForceTerms::over(plant, &moment);
         Some(moment)
     }
@@ -89,8 +89,8 @@ impl<'a> RunningDevice<'a> {
         (dt, substeps): (f64, usize),
     ) -> f64 {
         let (state, motion) = (&mut self.state, &mut self.motion);
-        let device = self.device;
-        device.advance_loaded::<_, LEDGER>(state, motion, set_pressure, load, dt, substeps)
+        self.device
+            .advance_loaded::<_, LEDGER>(state, motion, set_pressure, load, dt, substeps)
     }
 
     /// Force of the device on its piston along extension now [N].

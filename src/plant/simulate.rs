@@ -17,7 +17,7 @@ use super::port::Port;
 use super::riding::Riding;
 use super::running_device::RunningDevice;
 use super::trajectory::Trajectory;
-use crate::device::{Device, DeviceState, PistonMotion};
+use crate::device::{Device, DeviceParameters, DeviceState, PistonMotion};
 use crate::physics::regulator::RegulatorState;
 use crate::physics::valve::ValvePosition;
 use crate::stats::median_step;
@@ -94,9 +94,9 @@ pub fn true_trajectory(
     if let Some(truth) = parts::true_trajectory(plant, inputs) {
         return truth;
     }
-    let device = Device::new(plant.with_friction_of_terms(plant.device.clone()));
+    let device = plant.device_under_terms();
     let replay = Replay::new(plant, inputs, nudging);
-    let mut rig = replay.start(&device);
+    let mut rig = replay.start(Device::new(&device));
     let mut truth = Trajectory::default();
     for i in 0..inputs.time.len() {
         replay.advance(&mut rig, i, &mut truth);
@@ -163,13 +163,13 @@ impl<'a> Replay<'a> {
     }
 
     /// The rig in the state in which the recording starts.
-    fn start(&self, device: &'a Device) -> RunningRig<'a> {
+    fn start(&self, device: Device<&'a DeviceParameters>) -> RunningRig<'a> {
         let (plant, inputs) = (self.plant, self.inputs);
         let cell = inputs.cell.as_ref();
         let pressing = cell.is_some_and(|c| c.observed.starts_pressing);
         let (motion, state) = match &inputs.initial {
-            InitialState::AtRest => at_rest(plant, device, inputs, pressing, self.pull(0)),
-            InitialState::Anywhere(held) => on_its_way(plant, device, inputs, held),
+            InitialState::AtRest => at_rest(plant, &device, inputs, pressing, self.pull(0)),
+            InitialState::Anywhere(held) => on_its_way(plant, &device, inputs, held),
         };
         let mut joints = cell.and_then(|trajectory| JointDeflections::new(trajectory, &plant.cell));
         if let (true, Some(joints), Some(kinematics)) = (pressing, &mut joints, &self.kinematics) {
@@ -372,7 +372,7 @@ impl<'a> Replay<'a> {
 /// Retracted on its stop, all at the atmosphere; or out on its stop at the first pressure set. A rig that presses what it holds pushes its stop in.
 fn at_rest(
     plant: &PlantParameters,
-    device: &Device,
+    device: &Device<&DeviceParameters>,
     inputs: &PlantInputs,
     pressing: bool,
     pull: f64,
@@ -393,7 +393,7 @@ fn at_rest(
 /// In mid-motion: the piston where it was measured, else on the surface if there is pressure behind it, else on the stop that the valve sends it to.
 fn on_its_way(
     plant: &PlantParameters,
-    device: &Device,
+    device: &Device<&DeviceParameters>,
     inputs: &PlantInputs,
     held: &HeldMotion,
 ) -> (PistonMotion, DeviceState) {

@@ -1,5 +1,7 @@
 //! Terms at the ports of a rig beside its device, contact and sensors: a term without a name, and laws of a user's own.
 
+use std::borrow::Cow;
+
 use super::latent::Latent;
 use super::moment::Moment;
 use super::own_law::OwnLaw;
@@ -74,15 +76,18 @@ impl PlantParameters {
         }
     }
 
-    /// A device's parameters with seals that the terms' friction may press.
-    pub fn with_friction_of_terms(&self, mut device: DeviceParameters) -> DeviceParameters {
-        if self.acts_at(Port::Friction) {
-            let latent = self.latent.iter().find_map(Latent::bristle_stiffness);
-            let mut own = self.own.iter().filter(|law| law.acts);
-            let stiffness = latent.or_else(|| own.find_map(OwnLaw::bristle_stiffness));
-            device.seal_friction = device.seal_friction.pressed(stiffness);
+    /// The device, with seals that the terms' friction may press.
+    pub fn device_under_terms(&self) -> Cow<'_, DeviceParameters> {
+        if !self.acts_at(Port::Friction) {
+            return Cow::Borrowed(&self.device);
         }
-        device
+        let latent = self.latent.iter().find_map(Latent::bristle_stiffness);
+        let mut own = self.own.iter().filter(|law| law.acts);
+        let stiffness = latent.or_else(|| own.find_map(OwnLaw::bristle_stiffness));
+        Cow::Owned(DeviceParameters {
+            seal_friction: self.device.seal_friction.pressed(stiffness),
+            ..self.device.clone()
+        })
     }
 
     /// Its additions to the readings of pressure, stroke and force at a moment.

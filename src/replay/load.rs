@@ -4,7 +4,6 @@ use super::{Commands, ReplayCell};
 use crate::arm::chain::JointKind;
 use crate::arm::load_arm;
 use crate::cell::{CellError, arm_options, choose_edge, complete, station, with_housing};
-use crate::effects::actual;
 use crate::plant::{ArmTrajectory, EdgeStation, PlantParameters, SharpEdge};
 use crate::scenario::{RecordedCell, load_recorded_cell};
 use crate::workpiece::{EdgeCurve, load_mesh};
@@ -91,7 +90,11 @@ impl LoadedCell {
 
     /// The nominal cell with the effects that its file has.
     pub fn plant(&self) -> PlantParameters {
-        actual(&self.scenario.nominal, &self.scenario.effects).into_inner()
+        let mut plant = PlantParameters::clone(&self.scenario.nominal);
+        for effect in &self.scenario.effects {
+            effect.put_into(&mut plant);
+        }
+        plant
     }
 
     /// The arm's trajectory in a recording: times [s], commanded places along the edge [m] and angles of the joints [rad], servos of a bandwidth [Hz].

@@ -1,6 +1,6 @@
 //! Record of a bench rig at each step.
 
-use crate::device::{Device, DeviceState, PistonMotion};
+use crate::device::{Device, DeviceParameters, DeviceState, PistonMotion};
 use crate::estimation::EstimatorOutput;
 use crate::physics::valve::ValvePosition;
 use crate::recording::schema;
@@ -53,7 +53,7 @@ pub struct RigTruth {
 
 /// Recorded quantities at a moment.
 pub(super) struct RigSample<'a> {
-    pub device: &'a Device,
+    pub device: &'a Device<&'a DeviceParameters>,
     pub state: &'a DeviceState,
     pub truth: &'a RigTruth,
     pub readings: &'a Readings,

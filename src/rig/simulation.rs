@@ -24,8 +24,6 @@ use crate::sensing::{Readings, SensorChain, Truth};
 pub struct Rig {
     /// The job, with the rig as it is stated.
     pub scenario: BenchScenario,
-    /// The device.
-    pub device: Device,
     /// Controller that answers forces with set pressures, as it is at the start.
     pub controller: ForceController,
     /// The rig's physics as it is.
@@ -61,12 +59,10 @@ impl Rig {
             pressing,
             scenario.step,
         )?;
-        let actual = actual(&scenario.nominal, &scenario.effects);
         Ok(Self {
-            device: Device::new(actual.with_friction_of_terms(actual.device.clone())),
+            actual: actual(&scenario.nominal, &scenario.effects),
             scenario,
             controller,
-            actual,
         })
     }
 
@@ -126,14 +122,12 @@ impl<'a> RigSimulation<'a> {
             scenario.start_stroke
         };
         let motion = PistonMotion { stroke, speed: 0.0 };
+        let device = Device::new(parameters);
+        let at_rest = device.at_rest(stroke, 0.0);
         let total_steps = (scenario.duration / scenario.step - 1e-9).ceil() as usize;
         let mut simulation = Self {
             rig,
-            device: RunningDevice::new(
-                actual,
-                &rig.device,
-                (motion, rig.device.at_rest(stroke, 0.0)),
-            ),
+            device: RunningDevice::new(actual, device, (motion, at_rest)),
             controller: rig.controller.clone(),
             answer: 0.0,
             errors: RunningSensors::new(actual.sensors),
@@ -266,7 +260,7 @@ impl<'a> RigSimulation<'a> {
     }
 
     fn truth_under(&self, load: &PistonLoad<'_>, moment: Option<&Moment>) -> RigTruth {
-        let (plant, device, motion) = (&self.rig.actual, &self.rig.device, self.device.motion);
+        let (plant, device, motion) = (&self.rig.actual, &self.device.device, self.device.motion);
         let force = device.piston_force(&self.device.state, motion);
         let contact_force = load.contact_force(0.0, motion);
         let added_outlet = moment.map_or(0.0, |now| plant.term(Port::OutletPressure, now));
@@ -312,7 +306,7 @@ impl<'a> RigSimulation<'a> {
             estimator.update(truth.time, &self.readings, self.device.state.valve)
         });
         self.log.push(&RigSample {
-            device: &self.rig.device,
+            device: &self.device.device,
             state: &self.device.state,
             truth: &truth,
             readings: &self.readings,

@@ -4,6 +4,8 @@ mod checks;
 mod record;
 mod saturation;
 mod start;
+#[cfg(test)]
+mod stored;
 
 use std::time::{Duration, Instant};
 
@@ -25,7 +27,7 @@ use crate::control::force::{ForceController, ForceObservation};
 use crate::control::law::{DriveLimit, JointLaw};
 use crate::control::servo::{AxisCommand, Servo};
 use crate::control::transmission::Motor;
-use crate::device::{PistonMotion, PressureMap};
+use crate::device::{Device, PistonMotion, PressureMap};
 use crate::path::{Phase, Reference};
 use crate::physics::command_lag::CommandLag;
 use crate::plant::{Moment, PistonLoad, RunningDevice, RunningSensors, Touch};
@@ -123,8 +125,9 @@ impl<'a> Simulation<'a> {
             parameters.full_stroke + desired.max(0.0) / parameters.end_stop.stiffness
         };
         let motion = PistonMotion { stroke, speed: 0.0 };
-        let at_rest = (motion, cell.device.at_rest(stroke, set_pressure));
-        let device = RunningDevice::new(&cell.setup.actual, &cell.device, at_rest);
+        let device = Device::new(&cell.setup.actual.device);
+        let at_rest = (motion, device.at_rest(stroke, set_pressure));
+        let device = RunningDevice::new(&cell.setup.actual, device, at_rest);
         let mut positions = cell.plan.start();
         let arm = &cell.setup.actual.cell;
         for (position, offset) in positions.iter_mut().zip(arm.encoder_offset) {
@@ -336,7 +339,7 @@ impl<'a> Simulation<'a> {
 
     /// Loads on the slide from now on, at a time [s], with the moment that its terms are of. Where the surface stands no one knows but where the tool touches it.
     fn load<'b>(&'b self, time: f64, touches: &'b [Touch]) -> (PistonLoad<'b>, Option<Moment>) {
-        let mass = self.cell.device.parameters().moving_mass;
+        let mass = self.cell.setup.actual.device.moving_mass;
         let mut load = PistonLoad::new(&self.cell.setup.actual.contact, mass, touches, time);
         load.stroke.0[0] = self.device.motion.stroke;
         load.axial.0[0] = mass * self.carried;
@@ -355,7 +358,7 @@ impl<'a> Simulation<'a> {
         device.face_terms(&mut load, moment.as_ref(), dt);
         let step = if cell.setup.scenario.device.locked {
             let motion = device.motion;
-            (cell.device).advance(&mut device.state, set_pressure, motion, dt, substeps);
+            (device.device).advance(&mut device.state, set_pressure, motion, dt, substeps);
             SlideStep {
                 motion,
                 device: self.slide_force,
@@ -383,7 +386,7 @@ impl<'a> Simulation<'a> {
         let locked = self.cell.setup.scenario.device.locked;
         let led = if locked { None } else { Some(slide.motion) };
         self.world.step(&self.pressed, led);
-        let mass = self.cell.device.parameters().moving_mass;
+        let mass = self.cell.setup.actual.device.moving_mass;
         self.device.motion = PistonMotion {
             stroke: self.world.positions()[slide_axis],
             speed: self.world.velocities()[slide_axis],

@@ -86,8 +86,8 @@ impl Simulation<'_> {
         let force_on_part = -(normal + friction);
         let normal = normal.normalize_or_zero();
         let gas = &actual.device.gas;
-        let pressures = cell.device.pressures(&self.device.state, stroke);
-        let mass = cell.device.parameters().moving_mass;
+        let pressures = self.device.device.pressures(&self.device.state, stroke);
+        let mass = actual.device.moving_mass;
         if !cell.setup.scenario.device.locked {
             self.slide_force = self.device.force() + further;
         }
