@@ -173,7 +173,7 @@ fn a_planted_flange_is_fitted_and_predicts_other_runs() {
     let least = 2.0 * half.hypot(0.9 * beyond);
     assert!(width(&again) > least, "{again:?} {least}");
     for run in &fit.report.runs {
-        let [peak, ringing, settling] = [run.peak_n, run.ringing_hz, run.settling_s];
+        let [peak, ringing, settling] = [run.peak_n, run.ringing_hz.unwrap(), run.settling_s];
         println!("{}: {peak:?} {ringing:?} {settling:?}", run.recording);
         assert!(peak.error().abs() < 0.15, "{}: {peak:?}", run.recording);
         assert!(

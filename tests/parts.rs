@@ -489,7 +489,7 @@ fn a_real_flange_fitted_to_one_run_predicts_another() {
     for run in [fitted, predicted] {
         let spread = run.sliding_spread_n.unwrap();
         assert!(run.peak_n.error().abs() < 0.15, "{run:?}");
-        assert!(run.ringing_hz.error().abs() < 0.1, "{run:?}");
+        assert!(run.ringing_hz.unwrap().error().abs() < 0.1, "{run:?}");
         assert!(spread.error().abs() < 0.3, "{run:?}");
     }
     // The improved file predicts both in one call, without a new fit, and says what was not covered.

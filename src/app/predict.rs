@@ -205,7 +205,7 @@ fn of_flange(
     let spread = run.sliding_spread_n;
     let results = [
         ("peak of the impact", "N", Some(run.peak_n)),
-        ("ringing", "Hz", Some(run.ringing_hz)),
+        ("ringing", "Hz", run.ringing_hz),
         ("settling", "s", Some(run.settling_s)),
         ("spread while sliding", "N", spread),
     ];

@@ -59,8 +59,8 @@ pub struct RunMetrics {
     pub settling: f64,
     /// When the tool was off for the last time [s].
     pub bounced: f64,
-    /// Frequency at which the force rings after the impact [Hz].
-    pub frequency: f64,
+    /// Frequency at which the force rings after the impact [Hz]; none where no line stands out.
+    pub frequency: Option<f64>,
     /// Its amplitude as it begins [N].
     pub ringing: f64,
     /// Rate at which that dies away [1/s]; none where it does not stand out long enough.
@@ -216,9 +216,9 @@ impl Run {
             peak: force[impact].iter().copied().fold(f64::MIN, f64::max),
             settling: outside.map_or(0.0, |i| time[hold.start + i] - contact),
             bounced,
-            decay: decay(times, forces, frequency),
+            decay: frequency.and_then(|f| decay(times, forces, f)),
             frequency,
-            ringing: power_at(times, forces, frequency).sqrt(),
+            ringing: frequency.map_or(0.0, |f| power_at(times, forces, f).sqrt()),
             steady: mean(&errors),
             unrest: deviation(&errors),
             moving,
@@ -403,15 +403,15 @@ pub(super) fn power_at(time: &[f64], values: &[f64], frequency: f64) -> f64 {
     (cosine * cosine + sine * sine) * (2.0 / f64::max(weights, 1e-12)).powi(2)
 }
 
-/// The frequency of the largest power in [`RINGING`] [Hz].
-fn loudest(time: &[f64], force: &[f64]) -> f64 {
+/// The frequency of the largest power in [`RINGING`] [Hz]; none where that lies at an end of it, as where a force settles slowly and nothing rings.
+fn loudest(time: &[f64], force: &[f64]) -> Option<f64> {
     let steps = 600;
     let at = |k: usize| RINGING.0 * (RINGING.1 / RINGING.0).powf(k as f64 / f64::from(steps));
     let powers: Vec<f64> = (0..=steps as usize)
         .map(|k| power_at(time, force, at(k)))
         .collect();
-    let best = (0..powers.len()).max_by(|a, b| powers[*a].total_cmp(&powers[*b]));
-    at(best.unwrap_or(0))
+    let best = (0..powers.len()).max_by(|a, b| powers[*a].total_cmp(&powers[*b]))?;
+    (0 < best && best < powers.len() - 1).then(|| at(best))
 }
 
 /// Rate at which the amplitude at a frequency falls [1/s]: a line through the logarithm of its amplitude in pieces of some cycles, while it stands out.
@@ -505,7 +505,7 @@ mod tests {
             (shown.impedance() / (2e6f64 * 3.0).sqrt() - 1.0).abs() < 0.05,
             "{shown:?}"
         );
-        assert!((shown.frequency - 80.0).abs() < 1.0, "{shown:?}");
+        assert!((shown.frequency.unwrap() - 80.0).abs() < 1.0, "{shown:?}");
         assert!((shown.decay.unwrap() / 12.0 - 1.0).abs() < 0.1, "{shown:?}");
         assert!((shown.steady - 1.5).abs() < 0.05, "{shown:?}");
         let other = run(0.25, 2).metrics().unwrap();

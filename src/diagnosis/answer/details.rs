@@ -361,8 +361,8 @@ pub struct RunReport {
     pub peak_n: f64,
     /// Time from contact until the force has settled.
     pub settling_s: f64,
-    /// Frequency of the ringing.
-    pub ringing_hz: f64,
+    /// Frequency of the ringing; none where no line stands out.
+    pub ringing_hz: Option<f64>,
     /// Rate at which it dies away.
     pub decay_1_per_s: Option<f64>,
     /// Mean of force less desired force once settled.

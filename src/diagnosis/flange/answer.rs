@@ -39,6 +39,13 @@ impl FlangeDiagnosis {
         spread_of_sizes(&values)
     }
 
+    /// Frequencies of the runs that ring [Hz].
+    fn frequencies(&self) -> Vec<f64> {
+        (self.runs.iter())
+            .filter_map(|(_, shown)| shown.frequency)
+            .collect()
+    }
+
     /// Residuals of the runs from the believed first order, by name; nothing of a flange that is as believed.
     #[must_use]
     pub fn missing(&self) -> Vec<&'static str> {
@@ -110,7 +117,8 @@ impl FlangeDiagnosis {
                 unlisted: None,
             }
         };
-        let mut ringing = vec![("frequency_hz", estimate(self.of(|s| s.frequency)))];
+        let frequency = spread_of_sizes(&self.frequencies());
+        let mut ringing = vec![("frequency_hz", estimate(frequency))];
         let decays = self.decays();
         if !decays.is_empty() {
             ringing.push(("decay_1_per_s", estimate(spread_of_sizes(&decays))));
@@ -269,8 +277,13 @@ impl FlangeDiagnosis {
         account.add(SectionKind::UnseenRun, paragraphs);
         let runs = self.runs.iter().map(|(name, s)| {
             format!(
-                "{name}: {:.3} m/s, {:.0} N desired; peak {:.0} N, ringing {:.1} Hz, settled after {:.2} s, steady error {:+.2} N",
-                s.approach, s.desired, s.peak, s.frequency, s.settling, s.steady
+                "{name}: {:.3} m/s, {:.0} N desired; peak {:.0} N, {}, settled after {:.2} s, steady error {:+.2} N",
+                s.approach,
+                s.desired,
+                s.peak,
+                ringing(s),
+                s.settling,
+                s.steady
             )
         });
         account.add(SectionKind::Runs, runs.collect());
@@ -287,7 +300,7 @@ impl FlangeDiagnosis {
     }
 
     fn ringing(&self) -> String {
-        let [f, f_low, f_high] = self.of(|s| s.frequency);
+        let [f, f_low, f_high] = spread_of_sizes(&self.frequencies());
         let decays = self.decays();
         let dies = if decays.is_empty() {
             "; in no run does it stand out long enough for its damping".to_owned()
@@ -356,6 +369,13 @@ fn extremes(values: &[f64]) -> [f64; 2] {
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     [least, most]
+}
+
+fn ringing(shown: &RunMetrics) -> String {
+    shown.frequency.map_or_else(
+        || "no ringing".to_owned(),
+        |frequency| format!("ringing {frequency:.1} Hz"),
+    )
 }
 
 fn report(name: &str, shown: &RunMetrics) -> RunReport {

@@ -94,11 +94,12 @@ fn beside(run: &SimulatedRun) -> String {
             100.0 * value.error()
         )
     };
-    let mut parts = vec![
-        told("peak", "N", &run.peak_n),
-        told("ringing", "Hz", &run.ringing_hz),
-        told("settled after", "s", &run.settling_s),
-    ];
+    let mut parts = vec![told("peak", "N", &run.peak_n)];
+    parts.extend(
+        run.ringing_hz
+            .map(|ringing| told("ringing", "Hz", &ringing)),
+    );
+    parts.push(told("settled after", "s", &run.settling_s));
     parts.extend(
         run.sliding_spread_n
             .map(|s| told("spread while sliding", "N", &s)),

@@ -118,7 +118,7 @@ fn predicted_by(
         force_before_n: run.course.course.before,
         force_ramp_s: run.course.course.ramp,
         peak_n: with_interval(made.peak, half[0]),
-        ringing_hz: with_interval(made.ringing, half[1]),
+        ringing_hz: made.ringing.map(|ringing| with_interval(ringing, half[1])),
         settling_s: with_interval(made.settling, half[2]),
         sliding_spread_n: made.spread.map(|spread| with_interval(spread, half[3])),
     };
@@ -156,10 +156,17 @@ fn alike(solutions: Vec<Solution>, fitted: &[Logged<'_>]) -> Vec<Solution> {
             let Some(made) = predict_run(&[solution.model], None, run) else {
                 return f64::INFINITY;
             };
-            let results = [made.peak, made.ringing, made.settling].into_iter();
-            let residuals = results
+            let error = |result: &report::SimulatedResult| (result.simulated / result.recorded).ln();
+            let ringing = match (run.shown.frequency, &made.ringing) {
+                (None, _) => 0.0,
+                (_, Some(ringing)) => error(ringing),
+                // One that does not ring is as wrong as can be.
+                (_, None) => f64::INFINITY,
+            };
+            let errors = [error(&made.peak), ringing, error(&made.settling)].into_iter();
+            let residuals = errors
                 .zip(ACCEPTED)
-                .map(|(result, accepted)| (result.simulated / result.recorded).ln() / accepted);
+                .map(|(error, accepted)| error / accepted);
             residuals.map(solve::loss).sum()
         });
         solution.cost + results.sum::<f64>()

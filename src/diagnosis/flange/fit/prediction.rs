@@ -106,7 +106,8 @@ type LoggedResult = (RunMetrics, Option<f64>);
 /// Results of a run by some flanges at all phases; none where one of them never settles to be measured.
 pub(super) struct RunPrediction {
     pub peak: SimulatedResult,
-    pub ringing: SimulatedResult,
+    /// None where either does not ring.
+    pub ringing: Option<SimulatedResult>,
     pub settling: SimulatedResult,
     pub spread: Option<SimulatedResult>,
     /// Force of the first flange [N].
@@ -137,17 +138,16 @@ pub(super) fn predict_run(
             }
         }
     }
-    if results.is_empty() {
-        return None;
-    }
-    let beside = |recorded: f64, of: &dyn Fn(&LoggedResult) -> f64| {
-        let values: Vec<f64> = results.iter().map(of).collect();
-        SimulatedResult {
+    let of_values = |recorded: f64, values: Vec<f64>| {
+        Some(SimulatedResult {
             recorded,
-            simulated: median(values.iter().copied()).unwrap_or(f64::NAN),
+            simulated: median(values.iter().copied())?,
             low: values.iter().copied().fold(f64::INFINITY, f64::min),
             high: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        }
+        })
+    };
+    let beside = |recorded: f64, of: &dyn Fn(&LoggedResult) -> f64| {
+        of_values(recorded, results.iter().map(of).collect())
     };
     let shown = run.shown;
     let spread = run.sliding().and(ripple).map(|_| {
@@ -156,11 +156,12 @@ pub(super) fn predict_run(
             spread.unwrap_or(0.0)
         })
     });
+    let rings = || results.iter().filter_map(|(m, _)| m.frequency).collect();
     Some(RunPrediction {
-        peak: beside(shown.peak, &|(m, _)| m.peak),
-        ringing: beside(shown.frequency, &|(m, _)| m.frequency),
-        settling: beside(shown.settling, &|(m, _)| m.settling),
-        spread,
+        peak: beside(shown.peak, &|(m, _)| m.peak)?,
+        ringing: (shown.frequency).and_then(|recorded| of_values(recorded, rings())),
+        settling: beside(shown.settling, &|(m, _)| m.settling)?,
+        spread: spread.flatten(),
         force: first,
     })
 }

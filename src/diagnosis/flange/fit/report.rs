@@ -42,8 +42,9 @@ pub struct SimulatedRun {
     pub force_ramp_s: f64,
     /// Peak of the impact.
     pub peak_n: SimulatedResult,
-    /// Frequency of the ringing.
-    pub ringing_hz: SimulatedResult,
+    /// Frequency of the ringing; none where either does not ring.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub ringing_hz: Option<SimulatedResult>,
     /// Time from contact until the force has settled.
     pub settling_s: SimulatedResult,
     /// Standard deviation of the force while the arm slides.

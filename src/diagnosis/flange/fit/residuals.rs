@@ -61,8 +61,8 @@ pub(super) struct Targets {
     /// Last bounce [s].
     bounced: f64,
     rings: [Vec<f64>; 2],
-    /// Centre of the power about the largest line, and of all power [Hz].
-    lines: [f64; 2],
+    /// Centre of the power about the largest line, and of all power [Hz]; none where nothing rings.
+    lines: Option<[f64; 2]>,
     peak: f64,
     scale: f64,
 }
@@ -90,8 +90,9 @@ impl Targets {
             let (a, b) = (at(bounced + a), at(bounced + b));
             spectrum(&run.time[a..b], &run.force[a..b])
         });
-        let lines = [LINE, WHOLE]
-            .map(|width| centroid(&rings[0], shown.frequency, width).unwrap_or(shown.frequency));
+        let lines = shown.frequency.map(|frequency| {
+            [LINE, WHOLE].map(|width| centroid(&rings[0], frequency, width).unwrap_or(frequency))
+        });
         Self {
             course,
             reader,
@@ -108,9 +109,9 @@ impl Targets {
         }
     }
 
-    /// Frequency of the largest line of the ringing [Hz].
-    pub fn line(&self) -> f64 {
-        self.lines[0]
+    /// Frequency of the largest line of the ringing [Hz], where it rings.
+    pub fn line(&self) -> Option<f64> {
+        self.lines.map(|[line, _]| line)
     }
 
     /// Residuals of the simulation from it, in those accepted, with a touch that is later [s].
@@ -135,9 +136,9 @@ impl Targets {
             let simulated = bands(&powers);
             let both = simulated.iter().zip(recorded);
             residuals.extend(both.map(|(s, r)| ((s + faint) / (r + faint)).ln() / RINGING.0));
-            if index == 0 {
-                for (line, width) in self.lines.into_iter().zip([LINE, WHOLE]) {
-                    let simulated = centroid(&powers, self.lines[0], width).unwrap_or(0.0);
+            if let (0, Some(lines)) = (index, self.lines) {
+                for (line, width) in lines.into_iter().zip([LINE, WHOLE]) {
+                    let simulated = centroid(&powers, lines[0], width).unwrap_or(0.0);
                     residuals.push((simulated / line).ln() / RINGING.1);
                 }
             }

@@ -45,7 +45,7 @@ pub(super) fn scatter(
         };
         let results = [
             Some(made.peak),
-            Some(made.ringing),
+            made.ringing,
             Some(made.settling),
             made.spread,
         ];

@@ -169,7 +169,10 @@ impl<'a> Problem<'a> {
     /// workpiece on what carries this.
     fn tune(&self, x: &mut [f64], seed: u64) {
         let model = self.model(x);
-        let square = (TAU * self.targets[0].line()).powi(2);
+        let Some(line) = self.targets.iter().find_map(Targets::line) else {
+            return;
+        };
+        let square = (TAU * line).powi(2);
         let (index, mass) = if seed.is_multiple_of(2) {
             (
                 STRUCTURE,
