@@ -156,7 +156,8 @@ fn alike(solutions: Vec<Solution>, fitted: &[Logged<'_>]) -> Vec<Solution> {
             let Some(made) = predict_run(&[solution.model], None, run) else {
                 return f64::INFINITY;
             };
-            let error = |result: &report::SimulatedResult| (result.simulated / result.recorded).ln();
+            let error =
+                |result: &report::SimulatedResult| (result.simulated / result.recorded).ln();
             let ringing = match (run.shown.frequency, &made.ringing) {
                 (None, _) => 0.0,
                 (_, Some(ringing)) => error(ringing),
