@@ -38,6 +38,7 @@
 //! - [`laboratory`]: recordings of devices by equations of its own, to prove a diagnosis with
 //! - [`proof`]: a diagnosis scored on the laboratory's cases
 //! - [`vary`]: sweeps of a scenario: the values of each run, and what drives its numbers
+//! - [`demonstration`]: short runs in which each effect shows
 //! - [`tasks`]: runs and diagnoses as tasks named by content, and the engines that do them
 //! - [`fleet`]: many recordings of many devices, and what their numbers say over time
 //! - [`figure`]: signals as SVG pictures
@@ -56,6 +57,7 @@ pub mod case;
 pub mod cell;
 pub mod collision;
 pub mod control;
+pub mod demonstration;
 #[cfg(feature = "cli")]
 pub mod design;
 pub mod device;
@@ -67,7 +69,6 @@ pub mod estimation;
 #[cfg(feature = "cli")]
 pub mod figure;
 pub mod flange;
-#[cfg(feature = "cli")]
 pub mod fleet;
 #[cfg(feature = "import")]
 pub mod import;
@@ -101,7 +102,6 @@ pub mod simulation;
 pub mod stats;
 #[cfg(feature = "cli")]
 pub mod tasks;
-#[cfg(feature = "cli")]
 pub mod vary;
 #[cfg(feature = "viewer")]
 pub mod viewer;

@@ -148,7 +148,7 @@ fn a_run_in_which_bodies_meet_stops_and_keeps_what_was_recorded() {
     let mut model = Cell::new(far).unwrap().setup.collision;
     model.move_body("post", DPose3::from_translation(place));
     cell.setup.collision = model;
-    let finished = run_cell(&cell, &mut |_, _| ()).unwrap();
+    let finished = run_cell(&cell, &mut |_| ()).unwrap();
     let Some(SimulationError::Collision {
         names, phase, time, ..
     }) = &finished.stop

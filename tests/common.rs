@@ -83,7 +83,7 @@ pub fn scenario(name: &str) -> Scenario {
 /// Runs a scenario to its end, which it must reach.
 pub fn run(scenario: Scenario) -> FinishedCell {
     let cell = Cell::new(scenario).unwrap_or_else(|error| panic!("{error}"));
-    let finished = run_cell(&cell, &mut |_, _| ()).unwrap();
+    let finished = run_cell(&cell, &mut |_| ()).unwrap();
     assert!(finished.stop.is_none(), "{}", finished.stop.unwrap());
     finished
 }

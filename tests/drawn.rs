@@ -66,7 +66,7 @@ fn the_ball_that_is_drawn_rides_on_the_edge_and_links_hang_on_their_joints() {
     job.workpiece.edge.start = 0.1;
     job.workpiece.edge.end = Some(0.13);
     let cell = Cell::new(job).unwrap();
-    let run = run_cell(&cell, &mut |_, _| ()).unwrap();
+    let run = run_cell(&cell, &mut |_| ()).unwrap();
     let scene = scene_of(&cell, &run.recording, &run.frames).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("recording.rrd");
@@ -157,7 +157,7 @@ fn what_is_checked_for_collisions_is_where_the_links_and_obstacles_are() {
         world_from_obstacle: turned,
     });
     let cell = Cell::new(job).unwrap();
-    let run = run_cell(&cell, &mut |_, _| ()).unwrap();
+    let run = run_cell(&cell, &mut |_| ()).unwrap();
     let scene = scene_of(&cell, &run.recording, &run.frames).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let write = |name: &str, scene: &Scene| {
@@ -314,7 +314,7 @@ fn the_edge_is_drawn_before_and_after_in_the_colours_of_its_error() {
     };
     job.expect.clear();
     let cell = Cell::new(job).unwrap();
-    let run = run_cell(&cell, &mut |_, _| ()).unwrap();
+    let run = run_cell(&cell, &mut |_| ()).unwrap();
     let profile = run.edge.as_ref().unwrap();
     let mut scene = scene_of(&cell, &run.recording, &run.frames).unwrap();
     assert!(scene.finished_edge.is_none());

@@ -96,7 +96,7 @@ fn no_drive_gives_more_than_its_limit_and_a_run_at_it_says_so() {
             let Ok(cell) = Cell::new(limited) else {
                 continue;
             };
-            let finished = run_cell(&cell, &mut |_, _| ()).unwrap();
+            let finished = run_cell(&cell, &mut |_| ()).unwrap();
             let largest = largest_torque(&finished, joint + 1);
             assert!(largest <= effort);
             // A drive that is limited elsewhere has another arm to carry: it may stay just below.

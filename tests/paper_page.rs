@@ -64,7 +64,7 @@ pub fn stands_in_the_page(name: &str, table: &str) {
 
 fn run(name: &str) -> (BenchScenario, FinishedBench) {
     let scenario = load_bench(&project(&format!("scenarios/{name}.toml"))).unwrap();
-    let finished = run_bench(&Rig::new(scenario.clone()).unwrap(), &mut |_, _| ()).unwrap();
+    let finished = run_bench(&Rig::new(scenario.clone()).unwrap(), &mut |_| ()).unwrap();
     assert_eq!(finished.stop, None);
     (scenario, finished)
 }
@@ -173,7 +173,7 @@ fn force_is_proportional_to_pressure_until_the_adc_is_full() {
         panic!("the paper's load cell is real")
     };
     cell.assumed_gain_resistor = 100.0;
-    let known = run_bench(&Rig::new(scenario.clone()).unwrap(), &mut |_, _| ()).unwrap();
+    let known = run_bench(&Rig::new(scenario.clone()).unwrap(), &mut |_| ()).unwrap();
     let (_, off) = push(
         "100 ohm fitted and assumed",
         3,
@@ -184,7 +184,7 @@ fn force_is_proportional_to_pressure_until_the_adc_is_full() {
         panic!("the paper's load cell is real")
     };
     (cell.amplifier.gain_resistor, cell.assumed_gain_resistor) = (121.0, 121.0);
-    let meant = run_bench(&Rig::new(scenario).unwrap(), &mut |_, _| ()).unwrap();
+    let meant = run_bench(&Rig::new(scenario).unwrap(), &mut |_| ()).unwrap();
     let (slope, off) = push(
         "121 ohm fitted and assumed",
         3,

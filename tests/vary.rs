@@ -6,7 +6,8 @@ use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 
-use idc_cell::recording::long_table::{LongColumn, read_long};
+use idc_cell::recording::long_column::LongColumn;
+use idc_cell::recording::long_table::read_long;
 use serde_json::Value;
 
 use crate::common::{project, skipped};

@@ -64,7 +64,7 @@ fn compare(name: &str, rounds: usize) -> Result<(), Box<dyn Error>> {
 
 fn run(cell: &Cell) -> Result<Duration, Box<dyn Error>> {
     let clock = Instant::now();
-    let finished = run_cell(cell, &mut |_, _| ())?;
+    let finished = run_cell(cell, &mut |_| ())?;
     let taken = clock.elapsed();
     match finished.stop {
         None => Ok(taken),

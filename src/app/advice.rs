@@ -9,7 +9,7 @@ use super::error::AppError;
 use super::progress;
 use crate::advice::{Advice, Effort, Manner, Remedy, RunOutcome, Trial, advise};
 use crate::cell::{Cell, CellError};
-use crate::run::run_cell;
+use crate::run::{RunError, run_cell};
 use crate::scenario::{KeyValue, ScenarioTemplate};
 
 /// Time that a search of the usual extent may take [s]; it is shorter unless the computer is slow or busy.
@@ -40,7 +40,7 @@ impl AdviceArguments {
         given: &[KeyValue],
         quiet: bool,
     ) -> AppError {
-        let AppError::Cell(refusal) = &error else {
+        let AppError::Run(RunError::Cell(refusal)) = &error else {
             return error;
         };
         let advice = self.search(template, given, refusal, quiet);
@@ -95,7 +95,7 @@ impl AdviceArguments {
 
 /// Runs a cell to its end.
 pub(super) fn outcome(cell: &Cell) -> Option<RunOutcome> {
-    let finished = run_cell(cell, &mut |_, _| ()).ok()?;
+    let finished = run_cell(cell, &mut |_| ()).ok()?;
     let summary = &finished.summary;
     let share = |percent: f64| 1e-2 * percent;
     Some(RunOutcome {

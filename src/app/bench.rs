@@ -1,15 +1,17 @@
 //! `idc run` of a bench scenario: from a rig to its recording and numbers.
 
+use std::time::Instant;
+
 use serde::Serialize;
 
 use super::bench_picture::scene_of;
 use super::error::AppError;
 use super::run::Source;
 use super::viewer::{PART_INTERVAL, Watch};
-use crate::metrics::{BenchSummary, BoundCheck};
+use crate::metrics::{BenchSummary, BoundCheck, Timing};
 use crate::recording::provenance::Provenance;
 use crate::rig::Rig;
-use crate::run::{FinishedBench, run_bench_observed};
+use crate::run::{FinishedBench, run_bench};
 use crate::scenario::{BenchScenario, JudgedValue};
 
 /// Runs a rig's whole job, and hands what is recorded over to who watches it.
@@ -20,7 +22,9 @@ pub(super) fn run_watched(
 ) -> Result<FinishedBench, AppError> {
     let length = (PART_INTERVAL / rig.scenario.step).round().max(1.0) as usize;
     let mut handed_over = 0;
-    let finished = run_bench_observed(rig, progress, &mut |simulation| {
+    let start = Instant::now();
+    let mut finished = run_bench(rig, &mut |simulation| {
+        progress(simulation.steps(), simulation.total_steps());
         if let Some(watch) = watch
             && (simulation.done() || simulation.steps().is_multiple_of(length))
             && let Ok(part) = simulation.since(handed_over)
@@ -29,8 +33,9 @@ pub(super) fn run_watched(
             handed_over = simulation.sample_count();
             watch.add(part, scene);
         }
-    });
-    Ok(finished?)
+    })?;
+    finished.summary.timing = Some(Timing::since(start, finished.summary.duration_s));
+    Ok(finished)
 }
 
 /// summary.json of a bench run.

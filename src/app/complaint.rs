@@ -21,6 +21,7 @@ use crate::cell::CellError;
 use crate::design::DesignError;
 use crate::keys::error::Place;
 use crate::metrics::MetricsError;
+use crate::run::RunError;
 use crate::scenario::place_of;
 
 /// The word that an error begins with.
@@ -51,35 +52,9 @@ pub fn complain(error: &AppError, json: bool) {
 
 /// Where in a file the error is.
 fn place(error: &AppError) -> Option<Place> {
-    let of_key = |file: &Path, key: &str| place_of(file, key);
     match error {
         AppError::Advised { source, .. } => place(source),
-        AppError::Scenario(error) | AppError::Cell(CellError::Scenario(error)) => {
-            error.place().cloned()
-        }
-        AppError::Cell(
-            CellError::EdgeUnknown { file, .. } | CellError::EdgeNotConvex { file, .. },
-        ) => ["edge", "loop"]
-            .into_iter()
-            .find_map(|key| of_key(file, &format!("workpiece.edge.{key}"))),
-        AppError::Cell(CellError::JointStiffness { file, .. }) => {
-            of_key(file, "joints.stiffness_n_m_per_rad")
-        }
-        AppError::Cell(CellError::Supply { file, .. } | CellError::Weight { file, .. }) => {
-            of_key(file, "process.force_n")
-        }
-        AppError::Cell(CellError::BallTooLarge { file, .. }) => {
-            of_key(file, "device.override.tool_ball_radius_mm")
-        }
-        AppError::Cell(CellError::ShiftBeyondStroke { file, .. }) => (["shift_mm", "tilt_deg"]
-            .iter())
-        .find_map(|key| of_key(file, &format!("workpiece.misplacement.{key}"))),
-        AppError::Cell(CellError::SeedPosture { file, .. }) => of_key(file, "arm.seed_posture_deg"),
-        AppError::Cell(CellError::EdgeStretch { file, key, .. }) => {
-            of_key(file, &format!("workpiece.edge.{key}"))
-        }
-        AppError::Cell(CellError::Effect { file, key, .. }) => of_key(file, key),
-        AppError::Cell(CellError::Burr { file, .. }) => of_key(file, "workpiece.burr.kind"),
+        AppError::Run(error) => place_of_run(error),
         AppError::Design(error) => match &**error {
             DesignError::File(error) => error.place().cloned(),
             DesignError::Variable { place, .. } | DesignError::UnknownMetric { place, .. } => {
@@ -87,10 +62,41 @@ fn place(error: &AppError) -> Option<Place> {
             }
             _ => None,
         },
-        AppError::Metrics {
+        _ => None,
+    }
+}
+
+/// The same of a scenario, its run or its numbers.
+fn place_of_run(error: &RunError) -> Option<Place> {
+    let of_key = |file: &Path, key: &str| place_of(file, key);
+    let error = match error {
+        RunError::Scenario(error) | RunError::Cell(CellError::Scenario(error)) => {
+            return error.place().cloned();
+        }
+        RunError::Metrics {
             file,
             source: MetricsError::UnknownMetric { metric, .. } | MetricsError::Bound { metric, .. },
-        } => of_key(Path::new(file), &format!("expect.{metric}")),
+        } => return of_key(Path::new(file), &format!("expect.{metric}")),
+        RunError::Cell(error) => error,
+        _ => return None,
+    };
+    match error {
+        CellError::EdgeUnknown { file, .. } | CellError::EdgeNotConvex { file, .. } => {
+            ["edge", "loop"]
+                .into_iter()
+                .find_map(|key| of_key(file, &format!("workpiece.edge.{key}")))
+        }
+        CellError::JointStiffness { file, .. } => of_key(file, "joints.stiffness_n_m_per_rad"),
+        CellError::Supply { file, .. } | CellError::Weight { file, .. } => {
+            of_key(file, "process.force_n")
+        }
+        CellError::BallTooLarge { file, .. } => of_key(file, "device.override.tool_ball_radius_mm"),
+        CellError::ShiftBeyondStroke { file, .. } => (["shift_mm", "tilt_deg"].iter())
+            .find_map(|key| of_key(file, &format!("workpiece.misplacement.{key}"))),
+        CellError::SeedPosture { file, .. } => of_key(file, "arm.seed_posture_deg"),
+        CellError::EdgeStretch { file, key, .. } => of_key(file, &format!("workpiece.edge.{key}")),
+        CellError::Effect { file, key, .. } => of_key(file, key),
+        CellError::Burr { file, .. } => of_key(file, "workpiece.burr.kind"),
         _ => None,
     }
 }

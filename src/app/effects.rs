@@ -3,7 +3,6 @@
 mod gallery;
 mod page;
 mod picture;
-mod scene;
 
 use std::path::PathBuf;
 
@@ -12,12 +11,12 @@ use clap::Args;
 use super::error::{AppError, ExitCode};
 use super::files::{Standing, prepare_file};
 use super::output::say;
+use crate::demonstration::{self as scene, Stage};
 use crate::effects::{Effect, NUMBER_OFF, NUMBERS_OFF, kinds};
 use crate::keys::suggestion::nearest;
 use crate::recording::atomic::write_text;
 use page::{Explained, by_subsystem};
 use picture::picture;
-use scene::Stage;
 
 /// For the help.
 pub(super) const EXAMPLES: &str = "\

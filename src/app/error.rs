@@ -7,7 +7,6 @@ use crate::design::DesignError;
 use crate::diagnosis::answer::AnswerError;
 use crate::diagnosis::recordings::recorded::RecordedError;
 use crate::import::ImportError;
-use crate::metrics::MetricsError;
 use crate::quantity::counted;
 use crate::recording::RecordingError;
 use crate::run::RunError;
@@ -33,17 +32,6 @@ impl From<ExitCode> for std::process::ExitCode {
     }
 }
 
-impl From<RunError> for AppError {
-    fn from(error: RunError) -> Self {
-        match error {
-            RunError::Scenario(error) => Self::Scenario(error),
-            RunError::Cell(error) => Self::Cell(error),
-            RunError::Metrics { file, source } => Self::Metrics { file, source },
-            RunError::Recording(error) => Self::Recording(error),
-        }
-    }
-}
-
 /// Bad input, or a file that cannot be written.
 #[derive(Debug, thiserror::Error)]
 pub enum AppError {
@@ -53,12 +41,9 @@ pub enum AppError {
         /// The folder.
         folder: String,
     },
-    /// The scenario file.
+    /// A scenario, its run or its numbers.
     #[error(transparent)]
-    Scenario(#[from] ScenarioError),
-    /// The cell.
-    #[error(transparent)]
-    Cell(#[from] CellError),
+    Run(#[from] RunError),
     /// A refusal with what would make the job possible.
     #[error("{source}{advice}")]
     Advised {
@@ -112,17 +97,6 @@ pub enum AppError {
         /// The letter that cannot.
         letter: char,
     },
-    /// A bound on a metric.
-    #[error("{file}: {source}")]
-    Metrics {
-        /// Scenario file.
-        file: String,
-        /// The fault.
-        source: MetricsError,
-    },
-    /// A recording.
-    #[error(transparent)]
-    Recording(#[from] RecordingError),
     /// A log, or its map's columns.
     #[error(transparent)]
     Import(#[from] ImportError),
@@ -208,12 +182,6 @@ pub enum AppError {
     /// Flags that ask for no runs.
     #[error("--set: {reason}")]
     Setting {
-        /// The fault, and what was expected.
-        reason: String,
-    },
-    /// An effect that cannot be put in as it is asked for.
-    #[error("--with: {reason}")]
-    With {
         /// The fault, and what was expected.
         reason: String,
     },
@@ -413,12 +381,24 @@ pub enum AppError {
     Json(#[from] serde_json::Error),
 }
 
+/// What keeps a scenario from being run may come from any part of it.
+macro_rules! of_a_run {
+    ($($error:ty),*) => {
+        $(impl From<$error> for AppError {
+            fn from(error: $error) -> Self {
+                Self::Run(error.into())
+            }
+        })*
+    };
+}
+of_a_run!(ScenarioError, CellError, RecordingError);
+
 impl From<CaseError> for AppError {
     fn from(error: CaseError) -> Self {
         match error {
-            CaseError::Scenario(error) => Self::Scenario(error),
-            CaseError::Cell(error) => Self::Cell(error),
-            CaseError::Recording(error) => Self::Recording(error),
+            CaseError::Scenario(error) => error.into(),
+            CaseError::Cell(error) => error.into(),
+            CaseError::Recording(error) => error.into(),
             CaseError::Recorded(error) => Self::Recorded(error),
             error => Self::Case(Box::new(error)),
         }

@@ -10,63 +10,48 @@ const PATIENCE: Duration = Duration::from_millis(700);
 /// Between two turns of a spinner.
 const TURN: Duration = Duration::from_millis(120);
 
-/// A bar of so many parts, of which it has yet to be told.
-pub(super) fn bar(verb: &str, hidden: bool) -> ProgressBar {
-    let bar = ProgressBar::with_draw_target(Some(0), ProgressDrawTarget::hidden());
-    let template = format!("{verb} {{wide_bar}} {{percent:>3}} %, {{eta}} left");
-    let style = ProgressStyle::with_template(&template);
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    show_later(&bar, hidden);
-    bar
-}
-
-/// A bar of so many bytes to read.
-pub(super) fn bytes(count: u64, hidden: bool) -> ProgressBar {
+/// A bar of a count with a text around it.
+fn of(count: u64, template: &str, hidden: bool) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(count), ProgressDrawTarget::hidden());
-    let template = "reading {wide_bar} {bytes} of {total_bytes}, {elapsed} so far";
     let style = ProgressStyle::with_template(template);
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     show_later(&bar, hidden);
     bar
 }
 
+/// A bar of so many parts, of which it has yet to be told.
+pub(super) fn bar(verb: &str, hidden: bool) -> ProgressBar {
+    let template = format!("{verb} {{wide_bar}} {{percent:>3}} %, {{eta}} left");
+    of(0, &template, hidden)
+}
+
+/// A bar of so many bytes to read.
+pub(super) fn bytes(count: u64, hidden: bool) -> ProgressBar {
+    let template = "reading {wide_bar} {bytes} of {total_bytes}, {elapsed} so far";
+    of(count, template, hidden)
+}
+
 /// A bar of so many cases.
 pub(super) fn cases(count: usize, hidden: bool) -> ProgressBar {
-    let bar = ProgressBar::with_draw_target(Some(count as u64), ProgressDrawTarget::hidden());
-    let style = ProgressStyle::with_template("{pos} of {len} cases {wide_bar} {eta} left");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    show_later(&bar, hidden);
-    bar
+    tasks(count, "case", hidden)
 }
 
 /// A bar of so many tasks of a kind, a word that takes an s. What stood at the start is not counted for the time that is left.
 pub(super) fn tasks(count: usize, word: &str, hidden: bool) -> ProgressBar {
-    let bar = ProgressBar::with_draw_target(Some(count as u64), ProgressDrawTarget::hidden());
     let template = format!("{{pos}} of {{len}} {word}s {{wide_bar}} {{eta}} left");
-    let style = ProgressStyle::with_template(&template);
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    show_later(&bar, hidden);
-    bar
+    of(count as u64, &template, hidden)
 }
 
 /// A bar of so many places.
 pub(super) fn places(count: usize, hidden: bool) -> ProgressBar {
-    let bar = ProgressBar::with_draw_target(Some(count as u64), ProgressDrawTarget::hidden());
-    let style = ProgressStyle::with_template("{pos} of {len} places {wide_bar} {eta} left");
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
-    show_later(&bar, hidden);
-    bar
+    tasks(count, "place", hidden)
 }
 
 /// A bar of so many runs, each of so many parts; its message is how many are done.
 pub(super) fn runs(count: usize, parts: usize, hidden: bool) -> ProgressBar {
-    let total = (count * parts) as u64;
-    let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::hidden());
     let template = format!("{{msg}} of {count} runs {{wide_bar}} {{eta}} left");
-    let style = ProgressStyle::with_template(&template);
-    bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+    let bar = of((count * parts) as u64, &template, hidden);
     bar.set_message("0");
-    show_later(&bar, hidden);
     bar
 }
 

@@ -39,7 +39,7 @@ use crate::recording::parquet::read_parquet;
 pub(super) use charts::{lacking, most_of, variable};
 pub(super) use provenance::sources;
 pub(super) use run::{of_run, page_of_run};
-pub(super) use run_result::{Label, RunResult, labels};
+pub(super) use run_result::RunResult;
 pub(super) use signals::{ROLES, chart_groups};
 
 /// For the help.

@@ -10,14 +10,14 @@ mod table;
 mod variants;
 
 pub(super) use cell_run::{Listener, RunPart};
-pub(super) use command::{RunArguments, nominal_of, put_in};
-pub(super) use numbers::{Numbers, can_run, metric_names, numbers};
+pub(super) use command::RunArguments;
+pub(super) use numbers::{Numbers, can_run, numbers};
 pub(super) use settings::blamed;
 pub(super) use source::Source;
-pub(super) use table::{FINISHED, most_telling};
 
 use super::error::{AppError, ExitCode};
 use super::files::{VARIED, is_same};
+use crate::run::put_in;
 use crate::scenario::{ScenarioTemplate, load_any};
 use command::one;
 use settings::product;

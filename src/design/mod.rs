@@ -23,7 +23,6 @@ mod evolve;
 mod file;
 mod front;
 mod goal;
-mod label;
 mod limits;
 mod picture;
 mod polish;
@@ -41,7 +40,6 @@ mod variable;
 pub use candidate::{Design, Evaluate, EvaluateError, Outcome, ScenarioOutcome};
 pub use error::DesignError;
 pub use file::schema;
-pub use label::{number, spoken};
 pub use limits::{Limit, LimitQuantity, Side};
 pub use picture::{front_svg, robustness_svg};
 pub use result::{

@@ -9,8 +9,8 @@ mod style;
 use plotters::prelude::*;
 
 use super::error::DesignError;
-use super::label::axis;
 use super::result::{Candidate, StudyResult};
+use crate::quantity::spoken::axis;
 use style::{
     Area, CHOSEN, Chart, DARK, Drawn, FONT, FRONT, GREY, GRID, LARGE, MARGIN, PX, TEXT, extent,
     inside, limits_of, svg, tick, written,

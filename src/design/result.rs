@@ -169,8 +169,8 @@ impl StudyResult {
             text,
             "# {} {} (start: {})",
             names.minimised,
-            super::label::number(self.chosen.objective),
-            super::label::number(self.start.objective),
+            crate::quantity::spoken::number(self.chosen.objective),
+            crate::quantity::spoken::number(self.start.objective),
         );
         text + &self.chosen.design.override_text()
     }

@@ -23,13 +23,13 @@ use super::error::DesignError;
 use super::evolve::evolve;
 use super::front::{non_dominated, widest_gaps};
 use super::goal::{Aim, Goal};
-use super::label::with_unit;
 use super::limits::Limit;
 use super::refine::{distinct_best, refine};
 use super::result::StudyResult;
 use super::robustness;
 use super::study::{Study, TradeOff};
 use super::variable::Domain;
+use crate::quantity::spoken::with_unit;
 
 /// Shares of the budget: evolution and refinement of the objective, of the second one, all levels, what binds. The second one's end of the front is as hard to
 /// find as the objective's own: with 0.08 and 0.06 for it, 2000 designs missed the front below 127 N in the example of docs/DESIGN.md, which 4000 follow down to 110 N.

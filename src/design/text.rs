@@ -2,12 +2,12 @@
 
 use std::fmt::Write;
 
-use super::label::{number, symbol, with_unit};
 use super::result::{ActiveBound, Candidate, Sensitivity, StudyResult};
 use super::robustness::KeptShare;
 use super::study::Study;
 use super::variable::{Domain, Variable};
 use crate::quantity::change as percent;
+use crate::quantity::spoken::{number, symbol, with_unit};
 
 const WIDTH: usize = 80;
 /// Rows of the front that are printed; design.json has them all.

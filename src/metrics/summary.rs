@@ -2,6 +2,8 @@
 //!
 //! Field names are file keys, so each ends in its unit; docs/METRICS.md defines every one.
 
+use std::time::Instant;
+
 use serde::{Deserialize, Serialize};
 
 /// The numbers of a run; keys are written in the order of the fields.
@@ -214,6 +216,12 @@ impl Timing {
             wall_time_s: wall,
             real_time_factor: simulated / wall,
         }
+    }
+
+    /// The timing of `simulated` [s] computed from `start` until now.
+    #[must_use]
+    pub fn since(start: Instant, simulated: f64) -> Self {
+        Self::new(simulated, start.elapsed().as_secs_f64())
     }
 }
 

@@ -4,6 +4,7 @@
 //! sensors of such a cell resolve. What is not zero but finer than that is `<0.001`. Files keep every digit.
 
 pub mod binomial;
+pub mod spoken;
 
 /// Significant digits at most; forces near the desired one differ in the fourth.
 pub const DIGITS: usize = 4;

@@ -18,15 +18,7 @@ use arrow::datatypes::{DataType, Field, Float64Type, Int32Type, Schema};
 
 use super::RecordingError;
 use super::atomic::write_atomic;
-
-/// A column.
-#[derive(Debug, Clone, PartialEq)]
-pub enum LongColumn {
-    /// Names.
-    Names(Vec<String>),
-    /// Numbers; NaN where there is none.
-    Numbers(Vec<f64>),
-}
+use super::long_column::LongColumn;
 
 /// Writes columns by name, all of one length.
 ///

@@ -1,10 +1,7 @@
 //! A bench's whole job: simulated and measured.
 
-use std::time::Instant;
-
-use super::PROGRESS_STEPS;
 use super::error::RunError;
-use crate::metrics::{BenchLimits, BenchSummary, Timing, summarise_bench};
+use crate::metrics::{BenchLimits, BenchSummary, summarise_bench};
 use crate::recording::Recording;
 use crate::rig::{Rig, RigError, RigSimulation};
 use crate::scenario::BenchScenario;
@@ -20,38 +17,17 @@ pub struct FinishedBench {
     pub stop: Option<RigError>,
 }
 
-/// Simulates and measures the whole job. `progress` is given steps done and in all.
+/// Simulates and measures the whole job; `observer` is given the simulation after every step.
 ///
 /// # Errors
 /// Nothing could be recorded or measured.
 pub fn run_bench(
     rig: &Rig,
-    progress: &mut dyn FnMut(usize, usize),
-) -> Result<FinishedBench, RunError> {
-    run_bench_observed(rig, progress, &mut |_| ())
-}
-
-/// The same; `observer` is given the simulation after every step.
-///
-/// # Errors
-/// Nothing could be recorded or measured.
-pub fn run_bench_observed(
-    rig: &Rig,
-    progress: &mut dyn FnMut(usize, usize),
     observer: &mut dyn FnMut(&RigSimulation<'_>),
 ) -> Result<FinishedBench, RunError> {
-    let start = Instant::now();
-    let (recording, stop) = rig.run(&mut |simulation| {
-        let steps = simulation.steps();
-        if steps.is_multiple_of(PROGRESS_STEPS) {
-            progress(steps, simulation.total_steps());
-        }
-        observer(simulation);
-    })?;
-    let wall = start.elapsed().as_secs_f64();
-    let mut summary = summarise_bench(&recording, &limits(&rig.scenario))
+    let (recording, stop) = rig.run(observer)?;
+    let summary = summarise_bench(&recording, &limits(&rig.scenario))
         .map_err(RunError::metrics(&rig.scenario.path))?;
-    summary.timing = Some(Timing::new(summary.duration_s, wall));
     Ok(FinishedBench {
         recording,
         summary,

@@ -1,11 +1,8 @@
 //! A cell's whole job: simulated and measured.
 
-use std::time::Instant;
-
-use super::PROGRESS_STEPS;
 use super::error::RunError;
 use crate::cell::Cell;
-use crate::metrics::{EdgeLimits, Summary, SummaryLimits, Timing, summarise, summarise_edge};
+use crate::metrics::{EdgeLimits, Summary, SummaryLimits, summarise, summarise_edge};
 use crate::recording::Recording;
 use crate::recording::csv::EdgeProfile;
 use crate::scenario::ChamferScenario;
@@ -25,46 +22,25 @@ pub struct FinishedCell {
     pub edge: Option<EdgeProfile>,
 }
 
-/// Simulates and measures the whole job. `progress` is given steps done and in all.
+/// Simulates and measures the whole job; `observer` is given the simulation after every step.
 ///
 /// # Errors
 /// Nothing could be recorded or measured.
 pub fn run_cell(
     cell: &Cell,
-    progress: &mut dyn FnMut(usize, usize),
-) -> Result<FinishedCell, RunError> {
-    run_cell_observed(cell, progress, &mut |_| ())
-}
-
-/// The same; `observer` is given the simulation after every step.
-///
-/// # Errors
-/// Nothing could be recorded or measured.
-pub fn run_cell_observed(
-    cell: &Cell,
-    progress: &mut dyn FnMut(usize, usize),
     observer: &mut dyn FnMut(&Simulation<'_>),
 ) -> Result<FinishedCell, RunError> {
-    let start = Instant::now();
     let CellRun {
         recording,
         frames,
         stop,
         edge,
-    } = cell.run(&mut |simulation| {
-        let steps = simulation.steps();
-        if steps.is_multiple_of(PROGRESS_STEPS) {
-            progress(steps, simulation.total_steps());
-        }
-        observer(simulation);
-    })?;
-    let wall = start.elapsed().as_secs_f64();
+    } = cell.run(observer)?;
     let mut summary = summarise(&recording, &limits(cell))
         .map_err(RunError::metrics(&cell.setup.scenario.path))?;
     if let Some(edge) = &edge {
         summarise_edge(&mut summary, edge, &edge_limits(cell));
     }
-    summary.timing = Some(Timing::new(summary.duration_s, wall));
     Ok(FinishedCell {
         recording,
         frames,

@@ -22,6 +22,12 @@ pub enum RunError {
         /// The fault.
         source: MetricsError,
     },
+    /// An effect that cannot be put in as it is asked for.
+    #[error("--with: {reason}")]
+    With {
+        /// The fault, and what was expected.
+        reason: String,
+    },
     /// The recording.
     #[error(transparent)]
     Recording(#[from] RecordingError),
@@ -29,7 +35,7 @@ pub enum RunError {
 
 impl RunError {
     /// A fault of the metrics of a scenario file.
-    pub(super) fn metrics(file: &std::path::Path) -> impl Fn(MetricsError) -> Self {
+    pub(crate) fn metrics(file: &std::path::Path) -> impl Fn(MetricsError) -> Self {
         let file = file.display().to_string();
         move |source| Self::Metrics {
             file: file.clone(),

@@ -77,9 +77,7 @@ impl Job {
     pub fn run(&self, progress: &mut dyn FnMut(usize, usize)) -> Result<Outcome, RunError> {
         Ok(match self {
             Self::Cell(cell) => {
-                let mut run = run_cell(cell, progress)?;
-                // How long it took says nothing about the scenario.
-                run.summary.timing = None;
+                let run = run_cell(cell, &mut |s| progress(s.steps(), s.total_steps()))?;
                 Outcome {
                     bounds: run.bounds(cell)?,
                     metrics: values(METRICS, &run.summary),
@@ -88,8 +86,7 @@ impl Job {
                 }
             }
             Self::Bench(rig) => {
-                let mut run = run_bench(rig, progress)?;
-                run.summary.timing = None;
+                let run = run_bench(rig, &mut |s| progress(s.steps(), s.total_steps()))?;
                 Outcome {
                     bounds: run.bounds(rig)?,
                     metrics: values(BENCH_METRICS, &run.summary),

@@ -12,13 +12,12 @@
 
 mod bench;
 mod cell;
+mod effects;
 mod error;
 mod job;
 
-pub use bench::{FinishedBench, run_bench, run_bench_observed};
-pub use cell::{FinishedCell, run_cell, run_cell_observed};
+pub use bench::{FinishedBench, run_bench};
+pub use cell::{FinishedCell, run_cell};
+pub use effects::{nominal_of, put_in};
 pub use error::RunError;
 pub use job::{Job, Outcome};
-
-/// Steps between two reports of progress.
-const PROGRESS_STEPS: usize = 500;

@@ -5,6 +5,7 @@ use super::cell::overrides;
 use super::report::{Report, shown};
 use crate::metrics;
 use crate::rig::Rig;
+use crate::run::RunError;
 use crate::scenario::BenchScenario;
 use crate::scenario::bench::{CommandScenario, LoadScenario};
 use crate::shell::word;
@@ -15,12 +16,8 @@ const BYTES: f64 = 320.0;
 /// A bench that can be run.
 pub(super) fn bench(scenario: BenchScenario) -> Result<Report, AppError> {
     let file = scenario.path.clone();
-    metrics::validate(metrics::BENCH_METRICS, &scenario.expect).map_err(|source| {
-        AppError::Metrics {
-            file: file.display().to_string(),
-            source,
-        }
-    })?;
+    metrics::validate(metrics::BENCH_METRICS, &scenario.expect)
+        .map_err(RunError::metrics(&file))?;
     let rig = Rig::new(scenario)?;
     let scenario = &rig.scenario;
     let kind = "a bench to simulate: the device without an arm";

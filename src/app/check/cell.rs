@@ -11,6 +11,7 @@ use crate::path::Pass;
 use crate::quantity::significant;
 use crate::removal::ToolShape;
 use crate::replay::LoadedCell;
+use crate::run::RunError;
 use crate::scenario::{
     ArmScenario, BurrScenario, Scenario, WorkpieceScenario, keys_given, load_recorded_cell,
 };
@@ -25,10 +26,7 @@ const BYTES_PER_AXIS: f64 = 45.0;
 pub(super) fn cell(scenario: Scenario) -> Result<Report, AppError> {
     let file = scenario.path.clone();
     let known = metrics::validate_cell(&scenario.expect, &scenario.expect_of_passes());
-    known.map_err(|source| AppError::Metrics {
-        file: file.display().to_string(),
-        source,
-    })?;
+    known.map_err(RunError::metrics(&file))?;
     let cell = Cell::new(scenario)?;
     let scenario = &cell.setup.scenario;
     let mut report = Report::new(&file, "a robot cell to simulate", Some(&scenario.title));

@@ -123,12 +123,10 @@ fn run(template: &ScenarioTemplate, values: &[KeyValue]) -> Result<Run, Failure>
 
 fn bench(scenario: BenchScenario) -> Result<Run, Failure> {
     let rig = Rig::new(scenario)?;
-    let mut finished = run_bench(&rig, &mut |_, _| ())?;
+    let finished = run_bench(&rig, &mut |_| ())?;
     if let Some(stop) = finished.stop {
         return Err(stop.into());
     }
-    // How long it took says nothing about the design.
-    finished.summary.timing = None;
     let gravity = rig.actual.gravity_along_extension;
     Ok(Run {
         metrics: values_of(BENCH_METRICS, &finished.summary),
@@ -142,11 +140,10 @@ fn bench(scenario: BenchScenario) -> Result<Run, Failure> {
 
 fn cell(scenario: Scenario) -> Result<Run, Failure> {
     let cell = Cell::new(scenario)?;
-    let mut finished = run_cell(&cell, &mut |_, _| ())?;
+    let finished = run_cell(&cell, &mut |_| ())?;
     if let Some(stop) = finished.stop {
         return Err(stop.into());
     }
-    finished.summary.timing = None;
     let scenario = &cell.setup.scenario;
     let axial = force_range(
         &scenario.nominal.device,

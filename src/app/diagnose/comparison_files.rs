@@ -13,7 +13,8 @@ use crate::diagnosis::difference::comparison::{Balance, Compared, ComparedChanne
 use crate::diagnosis::recordings::recorded::COLUMNS;
 use crate::plant::{CHANNELS, Channel};
 use crate::recording::RecordingError;
-use crate::recording::long_table::{LongColumn, read_long, write_long};
+use crate::recording::long_column::LongColumn;
+use crate::recording::long_table::{read_long, write_long};
 
 const FITTED: &str = "fitted";
 const UNSEEN: &str = "unseen";
@@ -114,7 +115,7 @@ impl Rows<'_> {
 
     fn absent(&self, name: &str, of: &str) -> AppError {
         let cause = format!("it has no column `{name}` of {of}");
-        AppError::Recording(RecordingError::read(self.path, cause))
+        RecordingError::read(self.path, cause).into()
     }
 
     fn names(&self, name: &str) -> Result<&[String], AppError> {

@@ -7,7 +7,7 @@ use super::super::error::AppError;
 use super::super::files::{Standing, prepare_file};
 use super::page::{Explained, by_subsystem};
 use super::picture::picture;
-use super::scene::{self, Stage};
+use crate::demonstration::{self as scene, Stage};
 use crate::diagnosis::answer::words::capital;
 use crate::effects::Effect;
 use crate::recording::atomic::write_text;

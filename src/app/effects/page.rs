@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-use super::scene::{self, Scene, Stage};
+use crate::demonstration::{self as scene, Scene, Stage};
 use crate::diagnosis::answer::words::{capital, spoken, wrapped};
 use crate::effects::{Effect, Header, Subsystem, Which, kinds};
 use crate::plant::PlantParameters;

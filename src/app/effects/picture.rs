@@ -2,7 +2,7 @@
 
 use super::super::error::AppError;
 use super::page::title;
-use super::scene::{self, Signal, Stage};
+use crate::demonstration::{self as scene, Signal, Stage};
 use crate::effects::Effect;
 use crate::figure::{Figure, Panel, Role, Series, Stroke, svg};
 

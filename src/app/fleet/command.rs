@@ -8,14 +8,13 @@ use super::super::engine::{EngineArguments, PLAN, Tasks};
 use super::super::error::{AppError, ExitCode};
 use super::super::files::{OutputFolder, REPORT, Standing, is_same, output_folder};
 use super::super::output::say;
-use super::found::{FLEET, Found, recordings};
 use super::page::page_of;
-use super::planned::{check, write, write_fits};
-use super::table::{TABLE, write_table};
+use super::planned::{check, recordings, write, write_fits};
+use super::table::{FLEET, TABLE, write_table};
 use super::work::Worker;
-use crate::fleet::{Layout, scan};
+use crate::fleet::{Found, Layout, scan};
 use crate::quantity::counted;
-use crate::tasks::{Plan, Store};
+use crate::tasks::{Head, Plan, Store};
 
 /// For the help.
 pub(in super::super) const EXAMPLES: &str = "\
@@ -131,7 +130,8 @@ fn finish(
     let recordings = recordings(plan, places)?;
     let table = folder.path().join(TABLE);
     write_table(&recordings, &table)?;
-    let found = Found::of(&recordings, layout, &Plan::open(plan)?.head);
+    let Head { program, files, .. } = Plan::open(plan)?.head;
+    let found = Found::of(&recordings, layout, (&program, &files));
     let document = serde_json::to_string_pretty(&found)?;
     let page = page_of(&found)?;
     folder.write_texts(&[(REPORT, &page), (FLEET, &document)])?;

@@ -2,12 +2,11 @@
 
 use super::super::error::AppError;
 use super::super::report::sources;
-use super::found::{DeviceFound, Found, NumberChanged, NumberSeries, words};
 use super::table::TABLE;
-use crate::design::{number, spoken};
 use crate::figure::{Figure, Horizontal, Marker, Panel, Role, Series, Stroke, svg};
-use crate::fleet::date_of_day;
+use crate::fleet::{DeviceFound, Found, NumberChanged, NumberSeries, date_of_day, words};
 use crate::page::{Block, Fact, Page, PageSection, PageTable, TableCell, Tone, html};
+use crate::quantity::spoken::{number, spoken};
 
 /// The page of a fleet.
 pub(in super::super) fn page_of(found: &Found) -> Result<String, AppError> {

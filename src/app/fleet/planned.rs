@@ -5,15 +5,14 @@ use std::path::Path;
 
 use super::super::error::AppError;
 use super::super::vary::Files;
-use super::found::{Persistent, persistent};
 use super::work::{Asked, KIND, Shared, is_rig};
 use crate::cell::arm_options;
-use crate::fleet::{Dated, Layout};
+use crate::fleet::{Dated, Layout, Persistent, Recording, persistent};
 use crate::recording::RecordingError;
 use crate::recording::provenance::SourceFile;
 use crate::replay::LoadedCell;
 use crate::scenario::{files_of_cell, led_to};
-use crate::tasks::{Head, Plan, Task, name_of};
+use crate::tasks::{Head, Plan, Store, Task, name_of};
 
 /// Writes the plan of the diagnoses: each begins with what the device's last one came to, and is named by it, so that a recording that comes later changes none
 /// before it.
@@ -49,7 +48,7 @@ pub(super) fn write(layout: &Layout, scenario: &Path, plan: &Path) -> Result<(),
 pub(super) fn write_fits(plan: &Path, fits: &Path) -> Result<Vec<Option<String>>, AppError> {
     let opened = Plan::open(plan)?;
     let head = opened.head.clone();
-    let found = persistent(plan)?;
+    let found = persistent(&recordings(plan, &[])?);
     let mut tasks = Vec::new();
     let mut places = Vec::new();
     for task in opened {
@@ -174,4 +173,23 @@ pub(super) fn check(scenario: &Path) -> Result<(), AppError> {
     Ok(found
         .map(drop)
         .map_err(|e| RecordingError::read(scenario, e))?)
+}
+
+/// All recordings of a plan, in its order, with the fits that tell their numbers.
+pub fn recordings(plan: &Path, fits: &[Option<String>]) -> Result<Vec<Recording>, AppError> {
+    let store = Store::of(plan);
+    let read = |(place, task): (usize, Result<Task, _>)| {
+        let task = task?;
+        let asked: Asked = serde_json::from_value(task.work)?;
+        let fit = fits.get(place).and_then(Option::as_ref);
+        Ok(Recording {
+            device: asked.device,
+            name: asked.name,
+            day: asked.day,
+            result: store.read(&task.id)?,
+            followed: fit.map(|fit| store.read(fit)).transpose()?,
+            id: task.id,
+        })
+    };
+    Plan::open(plan)?.enumerate().map(read).collect()
 }

@@ -3,10 +3,12 @@
 use std::path::Path;
 
 use super::super::error::AppError;
-use super::found::Recording;
-use super::work::Told;
-use crate::recording::long_table::{LongColumn, write_groups};
+use crate::fleet::{NumberFound, Recording};
+use crate::recording::long_column::LongColumn;
+use crate::recording::long_table::write_groups;
 
+/// The document.
+pub(in super::super) const FLEET: &str = "fleet.json";
 /// The table.
 pub(super) const TABLE: &str = "fleet.parquet";
 const COLUMNS: [(&str, bool); 12] = [
@@ -41,7 +43,7 @@ fn group(recordings: &[Recording]) -> Vec<LongColumn> {
         .collect();
     for recording in recordings {
         let effects = recording.result.effects.iter();
-        let mut rows: Vec<(&str, Option<&Told>)> = effects
+        let mut rows: Vec<(&str, Option<&NumberFound>)> = effects
             .flat_map(|(effect, numbers)| {
                 let bare = numbers.is_empty().then_some((effect.as_str(), None));
                 let own = numbers.iter().map(|number| (effect.as_str(), Some(number)));
@@ -66,7 +68,12 @@ fn group(recordings: &[Recording]) -> Vec<LongColumn> {
     columns
 }
 
-fn row(columns: &mut [LongColumn], recording: &Recording, effect: &str, number: Option<&Told>) {
+fn row(
+    columns: &mut [LongColumn],
+    recording: &Recording,
+    effect: &str,
+    number: Option<&NumberFound>,
+) {
     let result = &recording.result;
     let names = [
         recording.device.as_str(),

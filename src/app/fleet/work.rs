@@ -1,16 +1,12 @@
-//! A recording of a fleet as a task: first by what explained the last one, and by nothing; where neither leaves noise alone, by a search.
+//! A recording of a fleet as a task.
 
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
 use super::super::error::{AppError, ExitCode};
-use crate::case::{Case, diagnose};
-use crate::diagnosis::answer::Verdict;
-use crate::diagnosis::answer::estimate::Number;
-use crate::diagnosis::search::known::{KnownEffects, KnownFit};
-use crate::diagnosis::settings::Settings;
-use crate::effects::Effect;
+use crate::case::Case;
+use crate::fleet::{Diagnosed, Started};
 use crate::replay::LoadedCell;
 use crate::scenario::rig_file::{RigFile, load_rig};
 use crate::tasks::{Plan, Store, Task, TaskError};
@@ -43,41 +39,6 @@ pub(super) struct Asked {
     /// Effects that are to be fitted, whatever else there is; without them the recording is diagnosed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fit: Option<Vec<Started>>,
-}
-
-/// An effect with the values that a fit starts from.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct Started {
-    pub name: String,
-    pub values: Vec<f64>,
-}
-
-/// A number with its interval at 95 %.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) struct Told {
-    pub name: String,
-    pub value: f64,
-    pub low: f64,
-    pub high: f64,
-}
-
-/// What a recording came to.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub(super) struct Diagnosed {
-    /// 0, or 2 where it could not be read.
-    pub code: u8,
-    /// Why it could not be read; empty where it could.
-    pub reason: String,
-    /// `nothing_missing`, `explained` or `unlisted`.
-    pub verdict: String,
-    /// Whether it took a search.
-    pub searched: bool,
-    /// What is at work, and its numbers that are told.
-    pub effects: Vec<(String, Vec<Told>)>,
-    /// What is believed within a tolerance, as the recording has it.
-    pub tolerated: Vec<Told>,
-    /// What the next recording begins with.
-    pub state: Vec<Started>,
 }
 
 /// What is believed.
@@ -164,105 +125,17 @@ impl Worker {
                 Case::of_rig(rig, folder, &asked.files)?
             }
         };
-        if let Some(fit) = &asked.fit {
-            let fitted = case.known_fit(&[known(&case, fit)])?;
-            return Ok((
-                fitted.map(|fit| of_fit(&case, &fit)).unwrap_or_default(),
-                None,
-            ));
-        }
-        let mut sets = vec![Vec::new()];
-        if !state.is_empty() {
-            sets.push(known(&case, state));
-        }
-        if let Some(fit) = case.known_fit(&sets)?
-            && fit.leaves_noise
-        {
-            return Ok((of_fit(&case, &fit), None));
-        }
-        let searched = diagnose(&case, &Settings::default(), &mut |_| ())?;
-        let mut result = Diagnosed {
-            verdict: word(searched.answer.verdict).to_owned(),
-            searched: true,
-            ..Diagnosed::default()
+        let (result, improved) = match &asked.fit {
+            Some(fit) => (Diagnosed::of_effects(&case, fit)?, None),
+            None => Diagnosed::after(&case, state)?,
         };
-        if let Some(diagnosis) = &searched.diagnosis {
-            let numbers = &diagnosis.estimates;
-            fill(&mut result, &case, &numbers.effects, &numbers.tolerated);
-            if searched.answer.verdict == Verdict::Unlisted {
-                result.effects.push(("unlisted".to_owned(), Vec::new()));
-            }
-        }
-        Ok((result, Some(searched.improved)))
+        Ok((result, improved))
     }
 }
 
 fn says_rig(file: &Path) -> bool {
     let text = std::fs::read_to_string(file).unwrap_or_default();
     text.lines().any(|line| line.trim() == "[device]") && text.contains("[sensors]")
-}
-
-fn word(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Explained => "explained",
-        Verdict::NothingMissing => "nothing_missing",
-        Verdict::Unlisted => "unlisted",
-    }
-}
-
-/// Effects by their names, of those that the case may have.
-fn known(case: &Case, started: &[Started]) -> KnownEffects {
-    let candidates = case.input().map(|input| &input.candidates);
-    let find = |name: &str| {
-        candidates?
-            .iter()
-            .find(|effect| effect.name == name)
-            .copied()
-    };
-    let of = |one: &Started| Some((find(&one.name)?, one.values.clone()));
-    started.iter().filter_map(of).collect()
-}
-
-fn of_fit(case: &Case, fit: &KnownFit) -> Diagnosed {
-    let verdict = match fit.effects.is_empty() {
-        true => "nothing_missing",
-        false => "explained",
-    };
-    let mut result = Diagnosed {
-        verdict: verdict.to_owned(),
-        ..Diagnosed::default()
-    };
-    fill(&mut result, case, &fit.effects, &fit.tolerated);
-    result
-}
-
-fn fill(
-    result: &mut Diagnosed,
-    case: &Case,
-    effects: &[(&'static Effect, Vec<Number>)],
-    tolerated: &[Number],
-) {
-    let told = |number: &Number| Told {
-        name: number.name.to_owned(),
-        value: number.value,
-        low: number.interval[0],
-        high: number.interval[1],
-    };
-    for (effect, numbers) in effects {
-        let reported = numbers.iter().filter(|number| number.reported).map(told);
-        result
-            .effects
-            .push((effect.name.to_owned(), reported.collect()));
-        let Some(input) = case.input() else { continue };
-        let parameters = effect.parameters(&input.believed);
-        let value = |name: &str| numbers.iter().find(|n| n.name == name).map(|n| n.value);
-        let values: Option<Vec<f64>> = parameters.iter().map(|p| value(p.quantity.name)).collect();
-        if let (Some(values), None) = (values, effect.phase) {
-            let name = effect.name.to_owned();
-            result.state.push(Started { name, values });
-        }
-    }
-    result.tolerated = tolerated.iter().map(told).collect();
 }
 
 /// Exit code of a task that stands.

@@ -14,7 +14,7 @@ use crate::arm::{ArmDraft, draft_of};
 use crate::cell::{Cell, CellError, Setup, Stance};
 use crate::metrics;
 use crate::quantity::significant;
-use crate::run::run_cell;
+use crate::run::{RunError, run_cell};
 use crate::scenario::load;
 
 /// Stretch of the plate's edge that is worked: its middle and the longest [mm], and the longest of the arm's reach [1].
@@ -391,7 +391,7 @@ fn run_once(file: &Path) -> Result<Option<String>, AppError> {
         Ok(cell) => cell,
         Err(error) => return Ok(Some(error.to_string())),
     };
-    let finished = run_cell(&cell, &mut |_, _| ())?;
+    let finished = run_cell(&cell, &mut |_| ())?;
     if let Some(stop) = finished.stop {
         return Ok(Some(stop.to_string()));
     }
@@ -406,10 +406,7 @@ fn run_once(file: &Path) -> Result<Option<String>, AppError> {
         &finished.summary,
         &cell.setup.scenario.expect,
     );
-    let verdicts = verdicts.map_err(|source| AppError::Metrics {
-        file: file.display().to_string(),
-        source,
-    })?;
+    let verdicts = verdicts.map_err(RunError::metrics(file))?;
     let outside = verdicts.iter().find(|verdict| !verdict.kept);
     Ok(outside.map(|verdict| format!("{} is out of its bounds in a run", verdict.metric)))
 }

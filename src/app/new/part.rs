@@ -199,7 +199,7 @@ fn with_force(force: f64) -> Vec<KeyValue> {
 
 /// A run whose bounds are not all kept counts as one that stopped.
 fn outcome(cell: &Cell) -> Option<RunOutcome> {
-    let finished = run_cell(cell, &mut |_, _| ()).ok()?;
+    let finished = run_cell(cell, &mut |_| ()).ok()?;
     let summary = &finished.summary;
     let verdicts = metrics::check(metrics::METRICS, summary, &cell.setup.scenario.expect).ok()?;
     Some(RunOutcome {

@@ -5,10 +5,10 @@ use serde_json::Value;
 use super::super::files::{DESIGN, OVERRIDE};
 use super::judged::judged;
 use super::provenance::provenance_of;
-use super::run_result::labels;
-use crate::design::{number, spoken};
 use crate::diagnosis::answer::words::capital;
+use crate::metrics::labels;
 use crate::page::{Block, Fact, Page, PageSection, PageTable, TableCell, Tone};
+use crate::quantity::spoken::{number, spoken};
 use crate::quantity::{UNKNOWN, change, optional, with_unit};
 
 /// The page.

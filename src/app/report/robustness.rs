@@ -3,9 +3,9 @@
 use serde_json::Value;
 
 use super::design::{bare, limit_words, list, named, quantity, text};
-use crate::design::{number, spoken};
 use crate::page::{Block, PageSection, PageTable, TableCell};
 use crate::quantity::UNKNOWN;
+use crate::quantity::spoken::{number, spoken};
 
 /// The section; none if nothing was drawn at the chosen design.
 pub(super) fn robustness<'a>(document: &Value, svg: Option<&str>) -> Option<PageSection<'a>> {

@@ -1,10 +1,10 @@
-//! A run as its folder has it, and its metrics for people.
+//! A run as its folder has it.
 
 use std::borrow::Cow;
 
 use serde_json::Value;
 
-use crate::metrics::{BENCH_METRICS, METRICS, Metric};
+use crate::metrics::{Label, labels};
 use crate::page::Drawing;
 use crate::recording::Recording;
 use crate::recording::csv::EdgeProfile;
@@ -25,38 +25,6 @@ pub(in super::super) struct RunResult<'a> {
     pub space: Option<Cow<'a, Drawing>>,
     /// edge_profile.csv.
     pub profile: Option<Cow<'a, EdgeProfile>>,
-}
-
-/// A metric for people.
-#[derive(Debug, Clone, PartialEq)]
-pub(in super::super) struct Label {
-    /// Key in summary.json.
-    pub key: &'static str,
-    /// Its name.
-    pub name: String,
-    /// Its unit; empty for a plain number.
-    pub unit: &'static str,
-    /// Its meaning.
-    pub meaning: &'static str,
-}
-
-fn labelled<S>(metrics: &[Metric<S>]) -> Vec<Label> {
-    let label = |metric: &Metric<S>| Label {
-        key: metric.name,
-        name: metric.full_label(),
-        unit: metric.shown_unit(),
-        meaning: metric.meaning,
-    };
-    metrics.iter().map(label).collect()
-}
-
-/// The metrics of benches, or of cells.
-pub(in super::super) fn labels(of_bench: bool) -> Vec<Label> {
-    if of_bench {
-        labelled(BENCH_METRICS)
-    } else {
-        labelled(METRICS)
-    }
 }
 
 impl RunResult<'_> {

@@ -1,14 +1,16 @@
 //! A run of a cell, watched part by part while it goes on, and its summary.json.
 
+use std::time::Instant;
+
 use super::super::error::AppError;
 use super::super::picture::{motion_of, scene_of};
 use super::super::viewer::{PART_INTERVAL, Watch};
 use super::source::Source;
 use crate::cell::{Cell, EstimatedArm};
-use crate::metrics::{BoundCheck, Summary};
+use crate::metrics::{BoundCheck, Summary, Timing};
 use crate::recording::provenance::Provenance;
 use crate::recording::{Recording, RecordingError};
-use crate::run::{FinishedCell, run_cell_observed};
+use crate::run::{FinishedCell, run_cell};
 use crate::scenario::{ChamferScenario, JudgedValue};
 use crate::scene::Scene;
 use crate::simulation::{FrameLog, SampleLog};
@@ -19,8 +21,10 @@ pub(super) fn run_heard(
     progress: &mut dyn FnMut(usize, usize),
     mut listeners: Vec<Listener<'_>>,
 ) -> Result<FinishedCell, AppError> {
+    let start = Instant::now();
     let mut failed = None;
-    let finished = run_cell_observed(cell, progress, &mut |simulation| {
+    let finished = run_cell(cell, &mut |simulation| {
+        progress(simulation.steps(), simulation.total_steps());
         for listener in &mut listeners {
             let due = simulation.done() || simulation.steps().is_multiple_of(listener.part);
             if failed.is_none() && due {
@@ -30,7 +34,11 @@ pub(super) fn run_heard(
     });
     match failed {
         Some(error) => Err(error),
-        None => Ok(finished?),
+        None => {
+            let mut finished = finished?;
+            finished.summary.timing = Some(Timing::since(start, finished.summary.duration_s));
+            Ok(finished)
+        }
     }
 }
 

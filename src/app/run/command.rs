@@ -14,11 +14,9 @@ use super::super::viewer::{Viewing, Watch};
 use super::job::Manner;
 use super::settings::{Setting, Variant, with_flags};
 use super::source::Source;
-use crate::cell::Cell;
-use crate::plant::{Nominal, PlantParameters};
 use crate::report::Style;
-use crate::run::Job;
-use crate::scenario::{AnyScenario, EffectRequest, KeyValue, ScenarioTemplate};
+use crate::run::{Job, RunError};
+use crate::scenario::{AnyScenario, EffectRequest, ScenarioTemplate};
 use crate::viewer::Opening;
 
 #[derive(Debug, Args)]
@@ -84,37 +82,6 @@ impl RunArguments {
     }
 }
 
-/// The nominal physics of a scenario, and the joint that shows most in it, from 1.
-pub(in super::super) fn nominal_of(
-    template: &ScenarioTemplate,
-) -> Result<(Nominal<PlantParameters>, usize), AppError> {
-    Ok(match template.with(&[])? {
-        AnyScenario::Bench(bench) => (bench.nominal, 1),
-        AnyScenario::Cell(cell) => {
-            let cell = Cell::new(*cell)?;
-            let telling = cell.telling_joint();
-            (cell.setup.scenario.nominal, telling)
-        }
-    })
-}
-
-/// Changes of a scenario by the effects that are asked for.
-pub(in super::super) fn put_in(
-    requests: &[EffectRequest],
-    template: &ScenarioTemplate,
-) -> Result<Vec<KeyValue>, AppError> {
-    if requests.is_empty() {
-        return Ok(Vec::new());
-    }
-    let (nominal, telling) = nominal_of(template)?;
-    let mut edits = Vec::new();
-    for request in requests {
-        let own = request.edits(&nominal, telling);
-        edits.extend(own.map_err(|reason| AppError::With { reason })?);
-    }
-    Ok(edits)
-}
-
 /// Runs one scenario; where it is varied, of that template.
 pub(super) fn one(
     arguments: &RunArguments,
@@ -137,7 +104,7 @@ pub(super) fn one(
                     (arguments.advice).with_advice(error, template, &variant.edits, quiet)
                 }
                 None => match (&error, read()) {
-                    (AppError::Cell(_), Ok(template)) => {
+                    (AppError::Run(RunError::Cell(_)), Ok(template)) => {
                         (arguments.advice).with_advice(error, &template, &[], quiet)
                     }
                     _ => error,

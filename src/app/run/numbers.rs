@@ -4,7 +4,6 @@ use serde::{Deserialize, Serialize};
 
 use super::super::error::{AppError, ExitCode};
 use super::job::judged;
-use crate::metrics::{BENCH_METRICS, METRICS};
 use crate::run::{Job, RunError};
 use crate::scenario::AnyScenario;
 
@@ -22,14 +21,6 @@ pub(in super::super) struct Numbers {
 /// Whether a scenario can be run, as far as is known before it is.
 pub(in super::super) fn can_run(scenario: AnyScenario) -> Result<(), AppError> {
     Ok(Job::new(scenario).map(drop)?)
-}
-
-/// Names and units of the metrics of a kind of scenario.
-pub(in super::super) fn metric_names(is_bench: bool) -> Vec<&'static str> {
-    match is_bench {
-        true => BENCH_METRICS.iter().map(|metric| metric.name).collect(),
-        false => METRICS.iter().map(|metric| metric.name).collect(),
-    }
 }
 
 /// Runs a scenario; what refuses it is a result as well.

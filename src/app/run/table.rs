@@ -6,54 +6,15 @@ use serde_json::Value;
 
 use super::super::error::ExitCode;
 use super::settings::{Variant, short};
-use crate::design::spoken;
-use crate::metrics::{BENCH_METRICS, METRICS};
+use crate::metrics::{BENCH_METRICS, FINISHED, METRICS, most_telling};
 use crate::quantity::column;
+use crate::quantity::spoken::spoken;
 
 /// Columns of a terminal.
 const WIDTH: usize = 80;
 /// Letters of a heading's line at least, of a value that varies at most.
 const NARROW: usize = 9;
 const LONGEST: usize = 24;
-/// Numbers of a cell and of a bench, what matters most first; those that no run determines, and those for which there is no room, are left out.
-const OF_CELL: [&str; 8] = [
-    "force_mean_n",
-    "coefficient_of_variation_percent",
-    "largest_deviation_n",
-    "engagement_peak_n",
-    "stroke_margin_mm",
-    "settling_time_s",
-    "duration_s",
-    "path_error_rms_um",
-];
-/// What a job that finishes an edge is for, before all that.
-const OF_EDGE: [&str; 4] = [
-    "chamfer_leg_mean_mm",
-    "residual_burr_max_mm",
-    "out_of_tolerance_share_percent",
-    "duration_s",
-];
-/// The metric that only a finished edge has.
-pub(in super::super) const FINISHED: &str = "chamfer_leg_mean_mm";
-const OF_BENCH: [&str; 7] = [
-    "force_mean_n",
-    "coefficient_of_variation_percent",
-    "force_rms_error_percent",
-    "force_settling_time_s",
-    "impact_peak_n",
-    "stroke_margin_mm",
-    "regulator_delay_s",
-];
-
-/// Metrics of a bench, or of a cell that finishes an edge or follows one, that matter most, the first ones most.
-pub(in super::super) fn most_telling(is_bench: bool, is_finished: bool) -> Vec<&'static str> {
-    if is_bench {
-        return OF_BENCH.to_vec();
-    }
-    let edge = if is_finished { &OF_EDGE[..] } else { &[] };
-    let others = OF_CELL.into_iter().filter(|name| !edge.contains(name));
-    edge.iter().copied().chain(others).collect()
-}
 
 /// A variant that has been run.
 pub(super) struct Done {

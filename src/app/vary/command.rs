@@ -8,16 +8,14 @@ use super::super::engine::{EngineArguments, PLAN, Tasks};
 use super::super::error::{AppError, ExitCode};
 use super::super::files::{OutputFolder, REPORT, Standing, output_folder};
 use super::super::output::say;
-use super::super::run::put_in;
-use super::drivers::{SWEEP, Swept};
 use super::page::page_of;
-use super::planned::Sweep;
-use super::table::{RUNS, write_table};
+use super::table::{RUNS, SWEEP, columns, write_table};
 use super::work::Worker;
 use crate::quantity::counted;
+use crate::run::put_in;
 use crate::scenario::{EffectRequest, ScenarioTemplate};
-use crate::tasks::{Plan, Store};
-use crate::vary::{Points, Sampling, Variable, VaryError};
+use crate::tasks::{Head, Plan, Store};
+use crate::vary::{Points, Sampling, Sweep, Swept, Variable, VaryError};
 
 /// For the help.
 pub(in super::super) const EXAMPLES: &str = "\
@@ -176,7 +174,8 @@ fn finish(
 ) -> Result<ExitCode, AppError> {
     let table = out.join(RUNS);
     write_table(plan, sweep.template.is_bench(), &table)?;
-    let swept = Swept::of(sweep, &Plan::open(plan)?.head, &table)?;
+    let Head { program, files, .. } = Plan::open(plan)?.head;
+    let swept = Swept::of(sweep, (&program, &files), &|wanted| columns(&table, wanted))?;
     let document = serde_json::to_string_pretty(&swept)?;
     let page = page_of(&swept, &table)?;
     let folder = OutputFolder::prepare(out, &[], Standing::Keep)?;

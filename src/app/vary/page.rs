@@ -3,16 +3,16 @@
 use std::path::Path;
 
 use super::super::error::AppError;
-use super::super::report::{Label, sources};
-use super::drivers::{MetricOfRuns, Swept, columns, percent, short};
-use super::table::RUNS;
-use crate::design::{number as plain, spoken};
+use super::super::report::sources;
+use super::table::{RUNS, columns};
 use crate::figure::{Figure, Horizontal, Panel, Role, Series, Stroke, svg};
+use crate::metrics::Label;
 use crate::page::{Block, Page, PageSection, PageTable, TableCell, Tone, html};
+use crate::quantity::spoken::{number as plain, spoken};
 use crate::quantity::{UNKNOWN, column, number};
-use crate::recording::long_table::LongColumn;
+use crate::recording::long_column::LongColumn;
 use crate::stats::quantiles;
-use crate::vary::QUANTILES;
+use crate::vary::{MetricOfRuns, QUANTILES, Swept, percent, short};
 
 /// Metrics that are drawn.
 const DRAWN: usize = 4;

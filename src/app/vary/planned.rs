@@ -8,18 +8,9 @@ use super::super::run::{blamed, can_run};
 use super::work::{KIND, Shared};
 use crate::cell::arm_options;
 use crate::recording::provenance::SourceFile;
-use crate::scenario::{
-    AnyScenario, KeyValue, ScenarioError, ScenarioTemplate, files_of_cell, led_to,
-};
+use crate::scenario::{AnyScenario, KeyValue, files_of_cell, led_to};
 use crate::tasks::{Head, Plan, Task, name_of};
-use crate::vary::{Points, Variable};
-
-/// A sweep that can be planned.
-pub(super) struct Sweep {
-    pub template: ScenarioTemplate,
-    pub fixed: Vec<KeyValue>,
-    pub points: Points,
-}
+use crate::vary::{Sweep, Variable};
 
 impl Sweep {
     /// Sees whether each value at the ends of its range, or that is named, is one that its key takes: with the others as they are in the file, or with all
@@ -57,27 +48,6 @@ impl Sweep {
                 _ => Err(error),
             },
         }
-    }
-
-    /// Whether the runs are held to bounds, with the values of the first.
-    pub(super) fn is_bounded(&self) -> bool {
-        let first = self.template.with(&self.edits(&self.points.at(0)));
-        match first.or_else(|_| self.with(&[])) {
-            Ok(AnyScenario::Cell(cell)) => !cell.expect.is_empty(),
-            Ok(AnyScenario::Bench(bench)) => !bench.expect.is_empty(),
-            Err(_) => false,
-        }
-    }
-
-    fn with(&self, edits: &[KeyValue]) -> Result<AnyScenario, ScenarioError> {
-        let all: Vec<KeyValue> = self.fixed.iter().chain(edits).cloned().collect();
-        self.template.with(&all)
-    }
-
-    fn edits(&self, values: &[String]) -> Vec<KeyValue> {
-        let own = self.points.variables().iter().zip(values);
-        let own = own.map(|(variable, value)| KeyValue::typed(&variable.key, value));
-        self.fixed.iter().cloned().chain(own).collect()
     }
 
     /// Writes the plan, a run at a time.

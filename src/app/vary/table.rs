@@ -1,15 +1,21 @@
 //! runs.parquet: a row for each run, in the order of the plan, whoever did them.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::super::error::AppError;
-use super::super::run::{Numbers, metric_names};
+use super::super::run::Numbers;
 use super::work::Shared;
-use crate::recording::long_table::{LongColumn, write_groups};
+use crate::metrics::metric_names;
+use crate::recording::RecordingError;
+use crate::recording::long_column::LongColumn;
+use crate::recording::long_table::{read_columns, write_groups};
 use crate::tasks::{Plan, Store};
 
 /// The table.
 pub(in super::super) const RUNS: &str = "runs.parquet";
+/// What it says.
+pub(in super::super) const SWEEP: &str = "vary.json";
 /// Columns before the keys.
 const OWN: [(&str, bool); 4] = [
     ("run", false),
@@ -19,6 +25,15 @@ const OWN: [(&str, bool); 4] = [
 ];
 /// Runs of a group: what is held at a time.
 const GROUP: usize = 4096;
+
+/// Columns of a table by their names.
+pub(super) fn columns(
+    table: &Path,
+    wanted: &[&str],
+) -> Result<BTreeMap<String, LongColumn>, RecordingError> {
+    let read = read_columns(table, |name| wanted.contains(&name))?;
+    Ok(read.into_iter().collect())
+}
 
 /// Writes the table of a plan of which all runs stand.
 pub(super) fn write_table(plan: &Path, is_bench: bool, table: &Path) -> Result<(), AppError> {

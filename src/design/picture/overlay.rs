@@ -6,8 +6,8 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use super::style::{
     Area, CHOSEN, Chart, DARK, Drawn, FONT, GREY, LIMIT, PX, TEXT, inside, limits_of,
 };
-use crate::design::label::{raised, with_unit};
 use crate::design::result::{LimitState, StudyResult};
+use crate::quantity::spoken::{raised, with_unit};
 
 type Corners = [(i32, i32); 2];
 

@@ -7,9 +7,9 @@ use super::style::{
     limits_of, svg, tick, written,
 };
 use crate::design::error::DesignError;
-use crate::design::label::axis;
 use crate::design::result::StudyResult;
 use crate::design::robustness::Robustness;
+use crate::quantity::spoken::axis;
 
 /// Height of the title, and of a row of panels.
 const HEAD: i32 = 92 * PX;

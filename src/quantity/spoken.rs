@@ -1,7 +1,7 @@
 //! Names and units for people, from keys that end in their unit.
 
+use super::significant;
 use crate::keys::units::{Unit, stem};
-use crate::quantity::significant;
 
 /// Suffixes of metrics that no file key has.
 const OTHERS: [(&str, &str); 3] = [("_percent", "%"), ("_nl", "Nl"), ("_g", "g")];
@@ -21,12 +21,13 @@ pub fn spoken(key: &str) -> (String, String) {
 }
 
 /// Unit of a key; empty for a pure number.
-pub(super) fn symbol(key: &str) -> &'static str {
+#[must_use]
+pub fn symbol(key: &str) -> &'static str {
     parts(key).1
 }
 
 /// `impact peak [N]` for `impact_peak_n`.
-pub(super) fn axis(key: &str) -> String {
+pub fn axis(key: &str) -> String {
     let (name, unit) = spoken(key);
     if unit.is_empty() {
         name
@@ -36,7 +37,7 @@ pub(super) fn axis(key: &str) -> String {
 }
 
 /// Powers of a unit as raised digits, for pictures.
-pub(super) fn raised(text: &str) -> String {
+pub fn raised(text: &str) -> String {
     let text = text
         .replace("mm2", "mm\u{b2}")
         .replace("cm3", "cm\u{b3}")
@@ -45,7 +46,7 @@ pub(super) fn raised(text: &str) -> String {
 }
 
 /// A value of a key with its unit, to five significant digits.
-pub(super) fn with_unit(key: &str, value: f64) -> String {
+pub fn with_unit(key: &str, value: f64) -> String {
     let value = number(value);
     match symbol(key) {
         "" => value,

@@ -1,25 +1,19 @@
-//! vary.json: how the numbers of a sweep are distributed, and which variable drives which.
+//! How the numbers of a sweep are distributed, and which variable drives which.
 
 use std::collections::BTreeMap;
-use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::super::error::AppError;
-use super::super::report::Label;
-use super::super::run::FINISHED;
-use super::planned::Sweep;
-use crate::design::{number, spoken};
+use super::sweep::Sweep;
+use super::{QUANTILES, Varied, rank_correlation, shares_of_variance};
+use crate::metrics::{FINISHED, Label, labels, metric_names, most_telling};
+use crate::quantity::spoken::{number, spoken};
 use crate::quantity::{column, counted};
 use crate::recording::RecordingError;
-use crate::recording::long_table::{LongColumn, read_columns};
+use crate::recording::long_column::LongColumn;
 use crate::recording::provenance::SourceFile;
 use crate::stats::quantiles;
-use crate::tasks::Head;
-use crate::vary::{QUANTILES, Varied, rank_correlation, shares_of_variance};
 
-/// The document.
-pub(in super::super) const SWEEP: &str = "vary.json";
 /// Refusals that are told with their run.
 const TOLD: usize = 3;
 /// Share from which a driver stands in a terminal's line [1].
@@ -29,14 +23,18 @@ const NAMED: usize = 2;
 
 /// A sweep that has been run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(in super::super) struct Swept {
+pub struct Swept {
+    /// Version of this form.
     pub schema: u32,
     /// The scenario's file and title.
     pub scenario: String,
+    /// See `scenario`.
     pub title: String,
+    /// Whether it is a bench's.
     pub is_bench: bool,
     /// How the points lie.
     pub points: String,
+    /// Their number.
     pub runs: usize,
     /// Whether the scenario sets bounds on results.
     #[serde(default)]
@@ -47,14 +45,18 @@ pub(in super::super) struct Swept {
     pub stopped: Vec<(usize, String)>,
     /// Keys that vary, with the ends of their values.
     pub variables: Vec<VariedKey>,
+    /// Numbers of the runs.
     pub metrics: Vec<MetricOfRuns>,
+    /// Who did the runs.
     pub program: String,
+    /// Files that all runs read.
     pub files: Vec<SourceFile>,
 }
 
 /// A key that varies.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(in super::super) struct VariedKey {
+pub struct VariedKey {
+    /// The key.
     pub key: String,
     /// Number of different values.
     pub values: usize,
@@ -67,7 +69,8 @@ pub(in super::super) struct VariedKey {
 
 /// A metric over all runs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(in super::super) struct MetricOfRuns {
+pub struct MetricOfRuns {
+    /// Its name in summary.json.
     pub name: String,
     /// Runs that determine it.
     pub runs: usize,
@@ -79,10 +82,12 @@ pub(in super::super) struct MetricOfRuns {
 
 /// How a metric goes with a variable.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(in super::super) struct Driver {
+pub struct Driver {
+    /// The variable's key.
     pub key: String,
     /// First-order share of the metric's variance [1], with its interval at 95 %.
     pub share: f64,
+    /// See `share`.
     pub interval: [f64; 2],
     /// What the same values shuffled among the runs get at most, 95 times of 100 [1].
     #[serde(default)]
@@ -93,7 +98,7 @@ pub(in super::super) struct Driver {
 
 impl Driver {
     /// Whether its share is told from chance.
-    pub(super) fn is_sure(&self) -> bool {
+    pub fn is_sure(&self) -> bool {
         self.interval[0] > self.shuffled
     }
 }
@@ -115,29 +120,25 @@ impl VariedKey {
 
 impl MetricOfRuns {
     /// Drivers of which it is sure.
-    pub(super) fn sure(&self) -> impl Iterator<Item = &Driver> {
+    pub fn sure(&self) -> impl Iterator<Item = &Driver> {
         self.drivers.iter().filter(|driver| driver.is_sure())
     }
 
     /// Whether it is another number in some run.
-    pub(super) fn varies(&self) -> bool {
+    pub fn varies(&self) -> bool {
         !self.drivers.is_empty()
     }
 
-    pub(super) fn quantile(&self, share: f64) -> Option<f64> {
+    /// One of its quantiles.
+    pub fn quantile(&self, share: f64) -> Option<f64> {
         let found = self.quantiles.iter().find(|(of, _)| *of == share);
         found.map(|(_, value)| *value)
     }
 }
 
-/// Columns of a table by their names.
-pub(super) fn columns(
-    table: &Path,
-    wanted: &[&str],
-) -> Result<BTreeMap<String, LongColumn>, RecordingError> {
-    let read = read_columns(table, |name| wanted.contains(&name))?;
-    Ok(read.into_iter().collect())
-}
+/// Columns of a table of runs by their names, a few at a time, as the table may be long.
+pub type ReadColumns<'a> =
+    &'a dyn Fn(&[&str]) -> Result<BTreeMap<String, LongColumn>, RecordingError>;
 
 /// Values of a column as numbers: names by their order in the alphabet.
 fn as_numbers(column: &LongColumn) -> Vec<f64> {
@@ -168,11 +169,18 @@ fn varied(key: &str, which: &str, column: &LongColumn) -> VariedKey {
 }
 
 impl Swept {
-    /// What a table says: it is read a metric at a time, as it may be long.
-    pub(super) fn of(sweep: &Sweep, head: &Head, table: &Path) -> Result<Self, AppError> {
+    /// What the table of a sweep's runs says, which a program of this name did from these files.
+    ///
+    /// # Errors
+    /// Those of reading, and of a table without the runs' codes and reasons.
+    pub fn of(
+        sweep: &Sweep,
+        (program, files): (&str, &[SourceFile]),
+        columns: ReadColumns<'_>,
+    ) -> Result<Self, RecordingError> {
         let keys = sweep.points.variables().iter();
         let keys: Vec<&str> = keys.map(|variable| variable.key.as_str()).collect();
-        let variables = columns(table, &keys)?;
+        let variables = columns(&keys)?;
         let numbers: Vec<(&str, bool, Vec<f64>)> = (keys.iter())
             .filter_map(|key| {
                 let column = variables.get(*key)?;
@@ -180,21 +188,21 @@ impl Swept {
                 Some((*key, names, as_numbers(column)))
             })
             .collect();
-        let metrics = super::super::run::metric_names(sweep.template.is_bench());
+        let metrics = metric_names(sweep.template.is_bench());
         let metrics = metrics.into_iter().map(|name| {
-            let read = columns(table, &[name])?;
+            let read = columns(&[name])?;
             let values = read.get(name).map(as_numbers).unwrap_or_default();
             Ok(metric(name, &values, &numbers))
         });
         let metrics: Vec<MetricOfRuns> = metrics.collect::<Result<_, RecordingError>>()?;
-        let (codes, stopped) = ends(table)?;
+        let (codes, stopped) = ends(columns)?;
         Ok(Self {
             schema: 1,
             scenario: sweep.template.path().display().to_string(),
             title: sweep.template.title().to_owned(),
             is_bench: sweep.template.is_bench(),
             points: sweep.points.words(),
-            runs: head.tasks,
+            runs: sweep.points.count(),
             codes,
             stopped,
             bounded: sweep.is_bounded(),
@@ -209,13 +217,13 @@ impl Swept {
                 })
                 .collect(),
             metrics: metrics.into_iter().filter(|m| m.runs > 0).collect(),
-            program: head.program.clone(),
-            files: head.files.clone(),
+            program: program.to_owned(),
+            files: files.to_vec(),
         })
     }
 
     /// How the runs ended, in a sentence.
-    pub(super) fn verdict(&self) -> String {
+    pub fn verdict(&self) -> String {
         let mut text = counted(self.runs, "run");
         let words = [
             (1, "outside the bounds"),
@@ -235,7 +243,7 @@ impl Swept {
     }
 
     /// For a terminal: the numbers that differ, and what drives them.
-    pub(super) fn text(&self) -> String {
+    pub fn text(&self) -> String {
         let mut text = format!("{}: {}\n", self.title, self.verdict());
         let labels = self.labels();
         for variable in &self.variables {
@@ -274,10 +282,10 @@ impl Swept {
     }
 
     /// Metrics that differ and matter most.
-    pub(super) fn told(&self) -> impl Iterator<Item = (Label, &MetricOfRuns)> {
+    pub fn told(&self) -> impl Iterator<Item = (Label, &MetricOfRuns)> {
         let labels = self.labels();
         let is_finished = self.metrics.iter().any(|metric| metric.name == FINISHED);
-        let names = super::super::run::most_telling(self.is_bench, is_finished);
+        let names = most_telling(self.is_bench, is_finished);
         names.into_iter().filter_map(move |name| {
             let metric = self.metrics.iter().find(|metric| metric.name == name)?;
             let label = labels.iter().find(|label| label.key == name)?;
@@ -286,18 +294,18 @@ impl Swept {
     }
 
     /// Its metrics for people.
-    pub(super) fn labels(&self) -> Vec<Label> {
-        super::super::report::labels(self.is_bench)
+    pub fn labels(&self) -> Vec<Label> {
+        labels(self.is_bench)
     }
 }
 
 /// The last part of a key.
-pub(super) fn short(key: &str) -> &str {
+pub fn short(key: &str) -> &str {
     key.rsplit('.').next().unwrap_or(key)
 }
 
 /// A share in percent, as it is told.
-pub(super) fn percent(share: f64) -> String {
+pub fn percent(share: f64) -> String {
     match 100.0 * share {
         percent if percent > 0.0 && percent < 0.5 => "<1".to_owned(),
         percent => format!("{percent:.0}"),
@@ -341,12 +349,14 @@ fn metric(name: &str, values: &[f64], variables: &[(&str, bool, Vec<f64>)]) -> M
 /// Runs by exit code, and the first that were refused or stopped.
 type Ends = (BTreeMap<u8, usize>, Vec<(usize, String)>);
 
-fn ends(table: &Path) -> Result<Ends, RecordingError> {
-    let read = columns(table, &["code", "reason"])?;
+fn ends(columns: ReadColumns<'_>) -> Result<Ends, RecordingError> {
+    let read = columns(&["code", "reason"])?;
     let (Some(LongColumn::Numbers(codes)), Some(LongColumn::Names(reasons))) =
         (read.get("code"), read.get("reason"))
     else {
-        return Err(RecordingError::read(table, "it is no table of runs"));
+        return Err(RecordingError::Missing {
+            quantity: "code".to_owned(),
+        });
     };
     let mut counts = BTreeMap::new();
     let mut told = Vec::new();

@@ -3,23 +3,21 @@
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
-use super::super::error::AppError;
-use super::super::run::{nominal_of, put_in};
 use crate::cell::Cell;
 use crate::effects::{Effect, LINK_EFFECTS, Subsystem};
 use crate::plant::{
     Channel, DeviceParts, InitialState, MeasuredMotion, Nominal, PlantInputs, PlantParameters,
     simulate,
 };
-use crate::recording::Recording;
 use crate::recording::schema::{self, JointSignal, joint_quantity};
+use crate::recording::{Recording, RecordingError};
 use crate::rig::Rig;
+use crate::run::{RunError, nominal_of, put_in};
 use crate::scenario::{AnyScenario, EffectRequest, KeyValue, ScenarioTemplate};
-use crate::simulation::{Simulation, SimulationError};
 
 /// A scenario that comes with the program.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) struct Shipped {
+pub struct Shipped {
     /// Its path in the project.
     pub path: &'static str,
     text: &'static str,
@@ -29,7 +27,7 @@ macro_rules! shipped {
     ($name:literal) => {
         Shipped {
             path: concat!("assets/effects/", $name, ".toml"),
-            text: include_str!(concat!("../../../assets/effects/", $name, ".toml")),
+            text: include_str!(concat!("../../assets/effects/", $name, ".toml")),
         }
     };
 }
@@ -44,20 +42,17 @@ static DRAW: Shipped = shipped!("draw");
 const BESIDE: [(&str, &[u8]); 3] = [
     (
         "models/arm/arm10.urdf",
-        include_bytes!("../../../models/arm/arm10.urdf"),
+        include_bytes!("../../models/arm/arm10.urdf"),
     ),
     (
         "models/device.toml",
-        include_bytes!("../../../models/device.toml"),
+        include_bytes!("../../models/device.toml"),
     ),
-    (
-        "assets/plate.stl",
-        include_bytes!("../../../assets/plate.stl"),
-    ),
+    ("assets/plate.stl", include_bytes!("../../assets/plate.stl")),
 ];
 
 /// Where an effect is shown.
-pub(super) enum Scene {
+pub enum Scene {
     /// In a run of a scenario.
     Run(&'static Shipped),
     /// In a part of a device alone.
@@ -66,7 +61,7 @@ pub(super) enum Scene {
 
 impl Scene {
     /// A name of its own.
-    pub(super) fn key(&self) -> String {
+    pub fn key(&self) -> String {
         match self {
             Self::Run(shipped) => shipped.path.to_owned(),
             Self::Part(parts) => parts.name().to_owned(),
@@ -75,7 +70,7 @@ impl Scene {
 }
 
 /// Presentation of an effect.
-pub(super) struct Presentation {
+pub struct Presentation {
     /// Where.
     pub scene: Scene,
     /// Between which times [s]; the whole run where there are none.
@@ -88,7 +83,7 @@ pub(super) struct Presentation {
 
 /// A number of another size than the usual one.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Size {
+pub struct Size {
     /// As `--with` takes it.
     pub asked: &'static str,
     /// Its key in SI.
@@ -103,7 +98,7 @@ const fn size(asked: &'static str, key: &'static str, value: f64) -> Option<Size
 
 /// Presentation of an effect: by its row, or as a step is.
 #[rustfmt::skip] // A table: one effect a line.
-pub(super) fn of(effect: &Effect) -> Presentation {
+pub fn of(effect: &Effect) -> Presentation {
     let whole = [0.0, f64::INFINITY];
     let (run, window, signals, size): (_, _, &[&str], _) = match effect.vocabulary().0 {
         "coulomb_viscous_friction" => (&SWAY, [1.0, 5.0], &["force", "stroke"], None),
@@ -168,14 +163,14 @@ fn part(parts: DeviceParts, size: Option<Size>) -> Presentation {
 }
 
 /// Argument of `--with` for it to be shown.
-pub(super) fn asked(effect: &Effect) -> String {
+pub fn asked(effect: &Effect) -> String {
     let name = effect.vocabulary().0;
     let size = of(effect).size;
     size.map_or(name.to_owned(), |size| format!("{name}:{}", size.asked))
 }
 
 /// Its numbers, as large as they are shown.
-pub(super) fn sizes(effect: &Effect, believed: &PlantParameters) -> Vec<f64> {
+pub fn sizes(effect: &Effect, believed: &PlantParameters) -> Vec<f64> {
     let usual = effect.usual(believed);
     let size = of(effect).size;
     let own = |key: &str, usual: f64| match size {
@@ -190,13 +185,13 @@ pub(super) fn sizes(effect: &Effect, believed: &PlantParameters) -> Vec<f64> {
 }
 
 /// Whether only a rig with a part of the device shows it.
-pub(super) fn is_of_part(effect: &Effect) -> bool {
+pub fn is_of_part(effect: &Effect) -> bool {
     LINK_EFFECTS.iter().any(|own| own.name == effect.name)
 }
 
 /// A signal in the unit in which it is drawn.
 #[derive(Debug, Clone)]
-pub(super) struct Signal {
+pub struct Signal {
     /// By which it is chosen.
     pub key: &'static str,
     /// Its title.
@@ -205,20 +200,23 @@ pub(super) struct Signal {
     pub axis: &'static str,
     /// Unit.
     pub unit: &'static str,
+    /// Its values.
     pub values: Vec<f64>,
 }
 
 /// Readings of a run's sensors.
 #[derive(Debug, Clone)]
-pub(super) struct Signals {
+pub struct Signals {
+    /// Times [s].
     pub time: Vec<f64>,
+    /// Them.
     pub signals: Vec<Signal>,
     /// Set pressure [bar gauge].
     pub set: Vec<f64>,
 }
 
 /// A scene that is ready to be run.
-pub(super) struct Stage {
+pub struct Stage {
     kind: Kind,
     /// Nominal parameters there.
     pub nominal: Nominal<PlantParameters>,
@@ -239,7 +237,10 @@ enum Kind {
 
 impl Stage {
     /// Sets a scene up.
-    pub(super) fn new(scene: &Scene) -> Result<Self, AppError> {
+    ///
+    /// # Errors
+    /// The scenario's files cannot be put down or read.
+    pub fn new(scene: &Scene) -> Result<Self, RunError> {
         match scene {
             Scene::Run(shipped) => Self::of_run(shipped),
             Scene::Part(parts) => {
@@ -260,15 +261,16 @@ impl Stage {
         }
     }
 
-    fn of_run(shipped: &Shipped) -> Result<Self, AppError> {
-        let folder = tempfile::tempdir().map_err(|error| unwritable(Path::new("."), &error))?;
+    fn of_run(shipped: &Shipped) -> Result<Self, RunError> {
+        let folder =
+            tempfile::tempdir().map_err(|error| RecordingError::write(Path::new("."), error))?;
         let scenario = (shipped.path, shipped.text.as_bytes());
         for (path, content) in BESIDE.into_iter().chain([scenario]) {
             let path = folder.path().join(path);
             let written = path.parent().map_or(Ok(()), std::fs::create_dir_all);
             written
                 .and_then(|()| std::fs::write(&path, content))
-                .map_err(|error| unwritable(&path, &error))?;
+                .map_err(|error| RecordingError::write(&path, error))?;
         }
         let path: PathBuf = folder.path().join(shipped.path);
         let template = ScenarioTemplate::read(&path)?;
@@ -285,7 +287,10 @@ impl Stage {
     }
 
     /// Its run without an effect, and with one of usual size.
-    pub(super) fn runs(&self, effect: &Effect) -> Result<[Signals; 2], AppError> {
+    ///
+    /// # Errors
+    /// An effect that cannot be put in, or a run that cannot be recorded.
+    pub fn runs(&self, effect: &Effect) -> Result<[Signals; 2], RunError> {
         match &self.kind {
             Kind::Part => Ok([false, true].map(|has| run_part(&self.nominal, effect, has))),
             Kind::Run {
@@ -301,14 +306,14 @@ impl Stage {
                     }
                 };
                 let asked = EffectRequest::parse(&asked(effect));
-                let asked = asked.map_err(|reason| AppError::With { reason })?;
+                let asked = asked.map_err(|reason| RunError::With { reason })?;
                 let edits: Vec<KeyValue> = put_in(&[asked], template)?;
                 Ok([unchanged.clone(), self.signals(template.with(&edits)?)?])
             }
         }
     }
 
-    fn signals(&self, scenario: AnyScenario) -> Result<Signals, AppError> {
+    fn signals(&self, scenario: AnyScenario) -> Result<Signals, RunError> {
         let atmosphere = self.nominal.device.gas.atmosphere;
         match scenario {
             AnyScenario::Bench(bench) => {
@@ -317,29 +322,13 @@ impl Stage {
             }
             AnyScenario::Cell(cell) => {
                 let cell = Cell::new(*cell)?;
-                let recording = simulated(&cell)?;
+                let recording = cell.run(&mut |_| ())?.recording;
                 let mut signals = of_recording(&recording, atmosphere);
                 signals.signals.extend(of_joint(&recording, self.telling));
                 Ok(signals)
             }
         }
     }
-}
-
-fn unwritable(path: &Path, error: &std::io::Error) -> AppError {
-    AppError::OutputFolder {
-        folder: path.display().to_string(),
-        reason: error.to_string(),
-    }
-}
-
-fn simulated(cell: &Cell) -> Result<Recording, AppError> {
-    let mut simulation = Simulation::new(cell);
-    let mut stop: Option<SimulationError> = None;
-    while !simulation.done() && stop.is_none() {
-        stop = simulation.step().err();
-    }
-    Ok(simulation.into_logs().0.into_recording()?)
 }
 
 /// A signal of a recording: quantity, key, name, name on an axis, unit, and what a value in SI is multiplied by.

@@ -1,21 +1,16 @@
-//! fleet.json: which effects appear where and since when, what drifts, which device is unlike the others, what could not be read.
+//! What a fleet's recordings say together: which effects appear where and since when, what drifts, which device is unlike the others, what could not be read.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
-use super::super::error::AppError;
-use super::work::{Asked, Diagnosed, Started, Told};
-use crate::design::{number, spoken};
-use crate::fleet::{Change, ChangeKind, Layout, change, date_of_day, trend};
+use super::diagnosed::{Diagnosed, NumberFound, Started};
+use super::{Change, ChangeKind, Layout, change, date_of_day, trend};
 use crate::quantity::counted;
+use crate::quantity::spoken::{number, spoken};
 use crate::recording::provenance::SourceFile;
 use crate::stats::{NORMAL_MAD, median};
-use crate::tasks::{Head, Plan, Store};
 
-/// The document.
-pub(in super::super) const FLEET: &str = "fleet.json";
 /// Recordings in which an effect must be found to be one of the device; of few recordings all.
 const SEEN: usize = 3;
 /// Probability at which all numbers of a fleet that do not change give an alarm, one or more [1].
@@ -30,14 +25,19 @@ const UNLIKE: f64 = 6.0;
 
 /// A recording with what it came to.
 #[derive(Debug, Clone)]
-pub(super) struct Recording {
+pub struct Recording {
+    /// Its device.
     pub device: String,
+    /// Its name, by its date.
     pub name: String,
+    /// Its day [d].
     pub day: f64,
+    /// Name of its task.
     pub id: String,
+    /// What it came to.
     pub result: Diagnosed,
     /// Its numbers by the effects that its device has; its own where it has these.
-    followed: Option<Diagnosed>,
+    pub followed: Option<Diagnosed>,
 }
 
 impl Recording {
@@ -47,7 +47,7 @@ impl Recording {
 }
 
 /// What a device has had for days.
-pub(super) struct Persistent {
+pub struct Persistent {
     /// Its effects, with the values of the first recording that shows them: later ones change nothing of earlier fits.
     pub effects: Vec<Started>,
     /// Tasks whose recordings were explained otherwise.
@@ -56,15 +56,13 @@ pub(super) struct Persistent {
 
 impl Persistent {
     /// Whether the task of a name did not have these effects.
-    pub(super) fn lacks(&self, id: &str) -> bool {
+    pub fn lacks(&self, id: &str) -> bool {
         self.others.contains(id)
     }
 }
 
 /// Devices with what they have had for days: found in at least three recordings, and in half of those from the first on.
-pub(super) fn persistent(plan: &Path) -> Result<BTreeMap<String, Persistent>, AppError> {
-    let none = Vec::new();
-    let all = recordings(plan, &none)?;
+pub fn persistent(all: &[Recording]) -> BTreeMap<String, Persistent> {
     let mut devices: BTreeMap<String, Vec<&Recording>> = BTreeMap::new();
     for recording in all.iter().filter(|recording| recording.result.code == 0) {
         devices
@@ -103,54 +101,43 @@ pub(super) fn persistent(plan: &Path) -> Result<BTreeMap<String, Persistent>, Ap
             .collect();
         Persistent { effects, others }
     };
-    Ok(devices
+    devices
         .iter()
         .map(|(name, recordings)| (name.clone(), of(recordings)))
-        .collect())
-}
-
-/// All recordings of a plan, in its order, with the fits that tell their numbers.
-pub(super) fn recordings(plan: &Path, fits: &[Option<String>]) -> Result<Vec<Recording>, AppError> {
-    let store = Store::of(plan);
-    let read = |(place, task): (usize, Result<crate::tasks::Task, _>)| {
-        let task: crate::tasks::Task = task?;
-        let asked: Asked = serde_json::from_value(task.work)?;
-        let fit = fits.get(place).and_then(Option::as_ref);
-        Ok(Recording {
-            device: asked.device,
-            name: asked.name,
-            day: asked.day,
-            result: store.read(&task.id)?,
-            followed: fit.map(|fit| store.read(fit)).transpose()?,
-            id: task.id,
-        })
-    };
-    Plan::open(plan)?.enumerate().map(read).collect()
+        .collect()
 }
 
 /// A fleet.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(in super::super) struct Found {
+pub struct Found {
+    /// Version of this form.
     pub schema: u32,
+    /// Number of recordings.
     pub recordings: usize,
     /// Recordings that took a search.
     pub searched: usize,
+    /// Devices with a recording that could be read.
     pub devices: Vec<DeviceFound>,
     /// Recordings that could not be read, and what was passed over: where, and why.
     pub unread: Vec<(String, String)>,
     /// Devices that are unlike the others, and in what.
     pub unlike: Vec<(String, String)>,
+    /// Who diagnosed them.
     pub program: String,
+    /// Files that all diagnoses read.
     pub files: Vec<SourceFile>,
 }
 
 /// A device.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(in super::super) struct DeviceFound {
+pub struct DeviceFound {
+    /// Its name.
     pub name: String,
+    /// Number of its recordings.
     pub recordings: usize,
     /// Dates of its first and last recording.
     pub first: String,
+    /// See `first`.
     pub last: String,
     /// Effects that it has.
     pub effects: Vec<EffectFound>,
@@ -164,10 +151,12 @@ pub(in super::super) struct DeviceFound {
 
 /// An effect of a device.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(in super::super) struct EffectFound {
+pub struct EffectFound {
+    /// Its name.
     pub name: String,
     /// Recordings in which it was found, of those that could be read.
     pub seen: usize,
+    /// See `seen`.
     pub of: usize,
     /// Date of the first recording in which it was found.
     pub first_seen: String,
@@ -177,9 +166,10 @@ pub(in super::super) struct EffectFound {
 
 /// When something began.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(in super::super) struct Since {
+pub struct Since {
     /// `step` or `growth`.
     pub kind: String,
+    /// When.
     pub date: String,
     /// Dates between which it began, at 95 %.
     pub between: [String; 2],
@@ -189,13 +179,16 @@ pub(in super::super) struct Since {
 
 /// A number that changed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(in super::super) struct NumberChanged {
+pub struct NumberChanged {
     /// Its effect; empty where it is one of what is believed.
     pub effect: String,
+    /// Its name, with its unit.
     pub number: String,
+    /// When.
     pub since: Since,
     /// Before, and at the end, in the number's unit.
     pub before: f64,
+    /// See `before`.
     pub after: f64,
     /// Trend over all days, in its unit a day, with its interval at 95 %.
     pub per_day: Option<[f64; 3]>,
@@ -203,10 +196,14 @@ pub(in super::super) struct NumberChanged {
 
 /// A number over the days.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(in super::super) struct NumberSeries {
+pub struct NumberSeries {
+    /// Its effect; empty where it is one of what is believed.
     pub effect: String,
+    /// Its name, with its unit.
     pub number: String,
+    /// Days of the recordings [d].
     pub days: Vec<f64>,
+    /// Its values on them.
     pub values: Vec<f64>,
 }
 
@@ -225,7 +222,7 @@ impl Since {
     }
 
     /// In words.
-    pub(super) fn words(&self) -> String {
+    pub fn words(&self) -> String {
         let what = match self.kind.as_str() {
             "growth" => "grows since",
             _ => "there since",
@@ -239,8 +236,12 @@ impl Since {
 }
 
 impl Found {
-    /// What the recordings say.
-    pub(super) fn of(recordings: &[Recording], layout: &Layout, head: &Head) -> Self {
+    /// What the recordings say, which a program of this name diagnosed with these files.
+    pub fn of(
+        recordings: &[Recording],
+        layout: &Layout,
+        (program, files): (&str, &[SourceFile]),
+    ) -> Self {
         let of = |name: &str| -> Vec<&Recording> {
             let own = recordings.iter().filter(|r| r.device == name);
             own.filter(|recording| recording.result.code == 0).collect()
@@ -270,13 +271,13 @@ impl Found {
             unlike: unlike(&devices),
             devices,
             unread: unread.chain(passed).collect(),
-            program: head.program.clone(),
-            files: head.files.clone(),
+            program: program.to_owned(),
+            files: files.to_vec(),
         }
     }
 
     /// Whether anything was found.
-    pub(super) fn verdict(&self) -> String {
+    pub fn verdict(&self) -> String {
         let with = |d: &&DeviceFound| !d.effects.is_empty() || !d.changed.is_empty();
         let count = self.devices.iter().filter(with).count();
         let of = counted(self.devices.len(), "device");
@@ -287,7 +288,7 @@ impl Found {
     }
 
     /// For a terminal.
-    pub(super) fn text(&self) -> String {
+    pub fn text(&self) -> String {
         let mut text = format!("{}\n", self.verdict());
         for device in &self.devices {
             for line in device.lines() {
@@ -306,7 +307,7 @@ impl Found {
 
 impl DeviceFound {
     /// What there is to tell of it, a line each.
-    pub(super) fn lines(&self) -> Vec<String> {
+    pub fn lines(&self) -> Vec<String> {
         let effects = self.effects.iter().map(|effect| {
             let since = match &effect.since {
                 Some(since) => since.words(),
@@ -340,7 +341,7 @@ impl DeviceFound {
 }
 
 /// An effect's name in words.
-pub(super) fn words(effect: &str) -> String {
+pub fn words(effect: &str) -> String {
     effect.replace('_', " ")
 }
 
@@ -353,7 +354,7 @@ fn all_series(recordings: &[&Recording]) -> Vec<NumberSeries> {
         let effects =
             effects.filter_map(|(effect, numbers)| Some((effect.as_str(), numbers.first()?)));
         let tolerated = result.tolerated.iter().map(|number| ("", number));
-        for (effect, Told { name, value, .. }) in effects.chain(tolerated) {
+        for (effect, NumberFound { name, value, .. }) in effects.chain(tolerated) {
             let own = found.entry((effect.to_owned(), name.clone())).or_default();
             own.0.push(recording.day);
             own.1.push(*value);
