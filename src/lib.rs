@@ -2,6 +2,8 @@
 //!
 //! Data flows one way: scenario -> cell -> simulation -> recording -> metrics -> report.
 //!
+//! - [`listed`]: enums whose variants are listed and named
+//! - [`unit`]: units, each declared once
 //! - [`quantity`]: numbers with their units as people read them
 //! - [`physics`]: the pneumatic equations, one effect a file
 //! - [`device`]: the device made of them
@@ -75,6 +77,7 @@ pub mod import;
 pub mod keys;
 #[cfg(feature = "cli")]
 pub mod laboratory;
+pub mod listed;
 pub mod mesh_file;
 pub mod metrics;
 #[cfg(feature = "cli")]
@@ -102,6 +105,7 @@ pub mod simulation;
 pub mod stats;
 #[cfg(feature = "cli")]
 pub mod tasks;
+pub mod unit;
 pub mod vary;
 #[cfg(feature = "viewer")]
 pub mod viewer;

@@ -17,6 +17,7 @@ use crate::case::{
 use crate::diagnosis::answer::details::UnknownGround;
 use crate::diagnosis::answer::words::of_column;
 use crate::diagnosis::recordings::clean::clean;
+use crate::diagnosis::recordings::device::Device;
 use crate::diagnosis::recordings::recorded::{COLUMNS, recorded_of};
 use crate::flange::FittedFlange;
 use crate::plant::Channel;
@@ -153,9 +154,8 @@ fn of_recording(rig: &RigFile, inputs: &Path, out: PathBuf) -> Result<Made, AppE
         .map(|(name, values)| (name.as_str(), values.as_slice())))
     .collect();
     let csv = columns_text(time, &columns)?;
-    let mass = rig.plant.device.moving_mass;
-    let cleaning = clean(time, &mut taken.readings, &rig.noise, mass);
-    let mut notes = cleaning.account(&rig.noise);
+    let cleaning = clean::<Device>(time, &mut taken.readings, &rig.noise, &rig.plant);
+    let mut notes = cleaning.account::<Device>(&rig.noise);
     notes.extend(UnknownGround::words(&file, &of_model.unknown));
     let off: Vec<Error> = (0..COLUMNS.len())
         .filter_map(|channel| {

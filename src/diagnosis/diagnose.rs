@@ -28,6 +28,7 @@ use super::search::ruled_out::{add_exchanged, ruled_out};
 use super::search::tried::Tried;
 use super::search::{RoughFit, Search};
 use super::settings::Settings;
+use crate::diagnosis::recordings::device::Device;
 use crate::plant::{CHANNELS, Channel, DeviceParts, PlantParameters, simulate};
 
 /// The fit of the answer to all recordings but one, from where that to all is.
@@ -327,12 +328,7 @@ fn unseen_errors(
     if measured.iter().flatten().all(|value| value.is_nan()) {
         return None;
     }
-    clean(
-        &inputs.time,
-        &mut measured,
-        &case.noise,
-        case.believed.device.moving_mass,
-    );
+    clean::<Device>(&inputs.time, &mut measured, &case.noise, &case.believed);
     for readings in &mut measured {
         readings[..inputs.initial.samples()].fill(f64::NAN);
     }

@@ -1,40 +1,30 @@
 //! A physical effect that a model may lack: an edit of the rig's description.
 
 use super::quantity::Coordinate;
+use crate::listed::listed;
 use crate::plant::registry::Number;
 use crate::plant::{PlantParameters, Quantity};
 
-/// Part of the chain in which an effect enters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Subsystem {
-    /// Forces on the piston.
-    ForceBalance,
-    /// Air.
-    Chambers,
-    /// From set pressure to outlet, and the valve.
-    Regulator,
-    /// Tool on workpiece.
-    Contact,
-    /// Sensors.
-    Sensors,
-    /// The arm that carries the device.
-    Arm,
-    /// The part.
-    Workpiece,
-}
-
-impl Subsystem {
+listed! {
+    /// Part of the chain in which an effect enters.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+    pub enum Subsystem,
     /// Name in an answer.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::ForceBalance => "force_balance",
-            Self::Chambers => "chambers",
-            Self::Regulator => "regulator",
-            Self::Contact => "contact",
-            Self::Sensors => "sensors",
-            Self::Arm => "arm",
-            Self::Workpiece => "workpiece",
-        }
+    name: &'static str {
+        /// Forces on the piston.
+        ForceBalance = "force_balance",
+        /// Air.
+        Chambers = "chambers",
+        /// From set pressure to outlet, and the valve.
+        Regulator = "regulator",
+        /// Tool on workpiece.
+        Contact = "contact",
+        /// Sensors.
+        Sensors = "sensors",
+        /// The arm that carries the device.
+        Arm = "arm",
+        /// The part.
+        Workpiece = "workpiece",
     }
 }
 

@@ -27,116 +27,73 @@ pub use motion::{FlangeCourse, SAMPLED, flange_force, flange_force_stepped};
 pub use reader::Reader;
 pub use ripple::{Ripple, rippled};
 
+/// Numbers of a model, each declared once: its field, and its name with its unit.
+macro_rules! numbers {
+    ($(#[$about:meta])* $model:ident, $count:ident; $($(#[$what:meta])* $field:ident = $name:literal;)*) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub struct $model {
+            $($(#[$what])* pub $field: f64,)*
+        }
+
+        impl $model {
+            /// Names of the numbers with their units, in order.
+            pub const NAMES: [&'static str; $count] = [$($name),*];
+
+            /// The numbers in the order of their names.
+            #[must_use]
+            pub fn numbers(&self) -> [f64; $count] {
+                [$(self.$field),*]
+            }
+
+            /// Of its numbers.
+            #[must_use]
+            pub fn of(numbers: &[f64; $count]) -> Self {
+                let [$($field),*] = *numbers;
+                Self { $($field),* }
+            }
+        }
+    };
+}
+
 /// Count of [`FlangeModel`]'s numbers.
 pub const FLANGE_NUMBERS: usize = 17;
 
-/// Numbers of a flange with its tool and its workpiece.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FlangeModel {
+numbers! {
+    /// Numbers of a flange with its tool and its workpiece.
+    FlangeModel, FLANGE_NUMBERS;
     /// All that moves with the slide, tool included [kg].
-    pub mass: f64,
+    mass = "moving_mass_kg";
     /// Share of it in front of the structure [kg].
-    pub head_mass: f64,
+    head_mass = "head_mass_kg";
     /// Between slide and head [N/m].
-    pub structure_stiffness: f64,
+    structure_stiffness = "structure_stiffness_n_per_m";
     /// Damping ratio [1].
-    pub structure_damping: f64,
+    structure_damping = "structure_damping_ratio";
     /// Quadratic damping [N s2/m2].
-    pub structure_quadratic: f64,
+    structure_quadratic = "structure_quadratic_damping_n_s2_per_m2";
     /// Between head and workpiece [N/m].
-    pub contact_stiffness: f64,
+    contact_stiffness = "contact_stiffness_n_per_m";
     /// Damping by the stiffness [s/m].
-    pub contact_damping: f64,
+    contact_damping = "contact_damping_s_per_m";
     /// What swings of the workpiece [kg].
-    pub workpiece_mass: f64,
+    workpiece_mass = "workpiece_mass_kg";
     /// Below it [N/m].
-    pub workpiece_stiffness: f64,
+    workpiece_stiffness = "workpiece_stiffness_n_per_m";
     /// Damping ratio [1].
-    pub workpiece_damping: f64,
+    workpiece_damping = "workpiece_damping_ratio";
     /// Coulomb friction of the seals [N].
-    pub coulomb: f64,
+    coulomb = "coulomb_force_n";
     /// Way in which it builds up [m].
-    pub presliding: f64,
+    presliding = "presliding_m";
     /// Viscous friction [N s/m].
-    pub viscous: f64,
+    viscous = "viscous_coefficient_n_s_per_m";
     /// Time in which the seals relax [s].
-    pub relaxation: f64,
+    relaxation = "seal_relaxation_s";
     /// Stiffness of the shut-in air [N/m].
-    pub gas_stiffness: f64,
+    gas_stiffness = "gas_stiffness_n_per_m";
     /// Time of the regulator [s].
-    pub regulator_time: f64,
+    regulator_time = "regulator_time_s";
     /// Time of its valve [s].
-    pub valve_time: f64,
-}
-
-impl FlangeModel {
-    /// Names of the numbers with their units, in order.
-    pub const NAMES: [&'static str; FLANGE_NUMBERS] = [
-        "moving_mass_kg",
-        "head_mass_kg",
-        "structure_stiffness_n_per_m",
-        "structure_damping_ratio",
-        "structure_quadratic_damping_n_s2_per_m2",
-        "contact_stiffness_n_per_m",
-        "contact_damping_s_per_m",
-        "workpiece_mass_kg",
-        "workpiece_stiffness_n_per_m",
-        "workpiece_damping_ratio",
-        "coulomb_force_n",
-        "presliding_m",
-        "viscous_coefficient_n_s_per_m",
-        "seal_relaxation_s",
-        "gas_stiffness_n_per_m",
-        "regulator_time_s",
-        "valve_time_s",
-    ];
-
-    /// The numbers in the order of their names.
-    #[must_use]
-    pub fn numbers(&self) -> [f64; FLANGE_NUMBERS] {
-        [
-            self.mass,
-            self.head_mass,
-            self.structure_stiffness,
-            self.structure_damping,
-            self.structure_quadratic,
-            self.contact_stiffness,
-            self.contact_damping,
-            self.workpiece_mass,
-            self.workpiece_stiffness,
-            self.workpiece_damping,
-            self.coulomb,
-            self.presliding,
-            self.viscous,
-            self.relaxation,
-            self.gas_stiffness,
-            self.regulator_time,
-            self.valve_time,
-        ]
-    }
-
-    /// Of its numbers.
-    #[must_use]
-    pub fn of(numbers: &[f64; FLANGE_NUMBERS]) -> Self {
-        let n = numbers;
-        Self {
-            mass: n[0],
-            head_mass: n[1],
-            structure_stiffness: n[2],
-            structure_damping: n[3],
-            structure_quadratic: n[4],
-            contact_stiffness: n[5],
-            contact_damping: n[6],
-            workpiece_mass: n[7],
-            workpiece_stiffness: n[8],
-            workpiece_damping: n[9],
-            coulomb: n[10],
-            presliding: n[11],
-            viscous: n[12],
-            relaxation: n[13],
-            gas_stiffness: n[14],
-            regulator_time: n[15],
-            valve_time: n[16],
-        }
-    }
+    valve_time = "valve_time_s";
 }

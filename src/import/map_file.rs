@@ -341,7 +341,7 @@ mod tests {
             page == PAGE,
             "assets/import/README.md differs from the keys; IDC_UPDATE_SCHEMAS=1 writes it anew"
         );
-        for unit in units::UNITS {
+        for unit in units::UNITS.iter() {
             assert!(PAGE.contains(&format!("`{}`", unit.name)), "{}", unit.name);
         }
     }

@@ -10,8 +10,8 @@ use super::declaration::{Key, Table};
 use super::document::Document;
 use super::error::ScenarioError;
 use super::suggestion::join;
-use super::units::{Unit, look_alike};
 use crate::plant::Number;
+use crate::unit::{Unit, look_alike};
 
 /// A table of a file, whose values are checked key by key.
 #[derive(Debug, Clone)]

@@ -14,8 +14,8 @@ use serde_json::{Map, Value, json};
 
 use super::schema::{DIALECT, type_schema};
 use super::suggestion::join;
-use super::units::Unit;
 use crate::plant::Number;
+use crate::unit::Unit;
 
 /// A value that a key has where the file gives none, as a file would give it.
 pub(crate) type Default = toml::Value;
@@ -602,7 +602,7 @@ macro_rules! keys {
             type Written = Self;
             const BELOW: Option<$crate::keys::declaration::Below> = Some($crate::keys::declaration::Below::of::<Self>());
 
-            fn filled(written: Self, _: $crate::keys::units::Unit) -> Result<Self, &'static str> {
+            fn filled(written: Self, _: $crate::unit::Unit) -> Result<Self, &'static str> {
                 Ok(written)
             }
 
@@ -619,7 +619,7 @@ macro_rules! keys {
             type Written = Self;
             const BELOW: Option<$crate::keys::declaration::Below> = <$table as $crate::keys::declaration::Filled>::BELOW;
 
-            fn filled(written: Self, _: $crate::keys::units::Unit) -> Result<Self, &'static str> {
+            fn filled(written: Self, _: $crate::unit::Unit) -> Result<Self, &'static str> {
                 Ok(written)
             }
 

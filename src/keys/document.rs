@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 use super::declaration::{Key, Table, names, tables};
 use super::error::{Excerpt, Place, ScenarioError};
 use super::suggestion::{Sections, advice, is_table, join, split};
-use super::units::Unit;
+use crate::unit::Unit;
 
 /// Forms of a number, in serde's messages and ours.
 pub(crate) const NUMBER_OR_TABLE: &str = "a number or { value, tolerance }";

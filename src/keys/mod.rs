@@ -6,4 +6,3 @@ pub(crate) mod document;
 pub mod error;
 pub(crate) mod schema;
 pub(crate) mod suggestion;
-pub(crate) mod units;

@@ -1,6 +1,6 @@
 //! Which key was probably meant by one that does not exist.
 
-use super::units::{Unit, stem};
+use crate::unit::{Unit, stem};
 
 /// Tables of a file, by dotted name, with their keys.
 pub(crate) type Sections = [(String, Vec<&'static str>)];

@@ -8,60 +8,47 @@
 //!
 //! Friction presses the seals: Coulomb friction of `equations::seal` at a level that the law gives.
 
+use crate::listed::listed;
+
 /// Memory that is none [s]: it breaks the loop of a law at the outlet of what flows from there.
 pub(super) const AT_ONCE: f64 = 1e-3;
 
-/// Where a law acts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Place {
-    /// Force on the piston along extension [N].
-    PistonForce,
-    /// Level of dry friction of the seals [N].
-    Friction,
-    /// Leak from chamber 1 to the atmosphere [m2].
-    FirstLeak,
-    /// Leak from chamber 2 to the atmosphere [m2].
-    SecondLeak,
-    /// Change of the supply orifice over what it is [1].
-    Supply,
-    /// Change of the exhaust orifice over what it is [1].
-    Exhaust,
-    /// Added to what the regulator follows [Pa].
-    SetPressure,
-    /// Added to the regulator's outlet [Pa].
-    Outlet,
-    /// Displacement of the surface along extension [m].
-    Surface,
-    /// Change of the contact's stiffness over what it is [1].
-    Stiffness,
-    /// Added to the load cell's signal [N].
-    ForceReading,
-    /// Added to the position sensor's reading [m].
-    StrokeReading,
-    /// Added to the pressure sensor's reading [Pa].
-    PressureReading,
+listed! {
+    /// Where a law acts.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+    pub enum Place,
+    /// In words, with its unit.
+    words: [&'static str; 2] {
+        /// Force on the piston along extension [N].
+        PistonForce = ["force on the piston", "N"],
+        /// Level of dry friction of the seals [N].
+        Friction = ["dry friction of the seals", "N"],
+        /// Leak from chamber 1 to the atmosphere [m2].
+        FirstLeak = ["leak of chamber 1 to the atmosphere", "m2"],
+        /// Leak from chamber 2 to the atmosphere [m2].
+        SecondLeak = ["leak of chamber 2 to the atmosphere", "m2"],
+        /// Change of the supply orifice over what it is [1].
+        Supply = ["relative change of the supply orifice", ""],
+        /// Change of the exhaust orifice over what it is [1].
+        Exhaust = ["relative change of the exhaust orifice", ""],
+        /// Added to what the regulator follows [Pa].
+        SetPressure = ["added to the regulator's target", "Pa"],
+        /// Added to the regulator's outlet [Pa].
+        Outlet = ["added to the regulator's outlet", "Pa"],
+        /// Displacement of the surface along extension [m].
+        Surface = ["displacement of the surface", "m"],
+        /// Change of the contact's stiffness over what it is [1].
+        Stiffness = ["relative change of the contact stiffness", ""],
+        /// Added to the load cell's signal [N].
+        ForceReading = ["added to the force reading", "N"],
+        /// Added to the position sensor's reading [m].
+        StrokeReading = ["added to the stroke reading", "m"],
+        /// Added to the pressure sensor's reading [Pa].
+        PressureReading = ["added to the pressure reading", "Pa"],
+    }
 }
 
 impl Place {
-    /// In words, with its unit.
-    pub fn words(self) -> [&'static str; 2] {
-        match self {
-            Self::PistonForce => ["force on the piston", "N"],
-            Self::Friction => ["dry friction of the seals", "N"],
-            Self::FirstLeak => ["leak of chamber 1 to the atmosphere", "m2"],
-            Self::SecondLeak => ["leak of chamber 2 to the atmosphere", "m2"],
-            Self::Supply => ["relative change of the supply orifice", ""],
-            Self::Exhaust => ["relative change of the exhaust orifice", ""],
-            Self::SetPressure => ["added to the regulator's target", "Pa"],
-            Self::Outlet => ["added to the regulator's outlet", "Pa"],
-            Self::Surface => ["displacement of the surface", "m"],
-            Self::Stiffness => ["relative change of the contact stiffness", ""],
-            Self::ForceReading => ["added to the force reading", "N"],
-            Self::StrokeReading => ["added to the stroke reading", "m"],
-            Self::PressureReading => ["added to the pressure reading", "Pa"],
-        }
-    }
-
     /// Subsystem of an answer.
     pub fn subsystem(self) -> &'static str {
         match self {
@@ -79,60 +66,32 @@ impl Place {
     }
 }
 
-/// What a law depends on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Driver {
-    /// Time of the recording [s].
-    Time,
-    /// Stroke [m].
-    Stroke,
-    /// Speed of extension [m/s].
-    Velocity,
-    /// Direction of motion [1].
-    Direction,
-    /// Pressure of chamber 1 [Pa absolute].
-    ChamberPressure,
-    /// Pressure of chamber 1 less that of chamber 2 [Pa].
-    PressureDifference,
-    /// Set pressure [Pa gauge].
-    SetPressure,
-    /// Contact force [N].
-    ContactForce,
-    /// Where the robot says that the surface stands [m].
-    Surface,
-    /// Air drawn from the regulator [kg/s].
-    MassFlow,
-}
-
-impl Driver {
-    /// All of them, in the order of a reading's values.
-    pub const ALL: [Self; 10] = [
-        Self::Time,
-        Self::Stroke,
-        Self::Velocity,
-        Self::Direction,
-        Self::ChamberPressure,
-        Self::PressureDifference,
-        Self::SetPressure,
-        Self::ContactForce,
-        Self::Surface,
-        Self::MassFlow,
-    ];
-
+listed! {
+    /// What a law depends on.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+    pub enum Driver: 10,
     /// Name in the vocabulary of an answer, and unit.
-    pub fn name(self) -> [&'static str; 2] {
-        match self {
-            Self::Time => ["time", "s"],
-            Self::Stroke => ["stroke_m", "m"],
-            Self::Velocity => ["velocity", "m/s"],
-            Self::Direction => ["velocity_sign", ""],
-            Self::ChamberPressure => ["chamber_pressure", "Pa"],
-            Self::PressureDifference => ["pressure_difference", "Pa"],
-            Self::SetPressure => ["set_pressure", "Pa"],
-            Self::ContactForce => ["contact_force", "N"],
-            Self::Surface => ["surface_m", "m"],
-            Self::MassFlow => ["mass_flow", "kg/s"],
-        }
+    name: [&'static str; 2] {
+        /// Time of the recording [s].
+        Time = ["time", "s"],
+        /// Stroke [m].
+        Stroke = ["stroke_m", "m"],
+        /// Speed of extension [m/s].
+        Velocity = ["velocity", "m/s"],
+        /// Direction of motion [1].
+        Direction = ["velocity_sign", ""],
+        /// Pressure of chamber 1 [Pa absolute].
+        ChamberPressure = ["chamber_pressure", "Pa"],
+        /// Pressure of chamber 1 less that of chamber 2 [Pa].
+        PressureDifference = ["pressure_difference", "Pa"],
+        /// Set pressure [Pa gauge].
+        SetPressure = ["set_pressure", "Pa"],
+        /// Contact force [N].
+        ContactForce = ["contact_force", "N"],
+        /// Where the robot says that the surface stands [m].
+        Surface = ["surface_m", "m"],
+        /// Air drawn from the regulator [kg/s].
+        MassFlow = ["mass_flow", "kg/s"],
     }
 }
 

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::catalogue::{Metric, entry};
+use super::catalogue::{entry, metrics};
 use super::load::air_mass_balance;
 use super::statistics::{extent, largest, moments, root_mean_square};
 use super::window::Window;
@@ -62,95 +62,52 @@ pub struct LevelSummary {
     pub stroke_mm: Option<f64>,
 }
 
-/// The numbers of a bench run. What a run does not determine is `None`.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-#[expect(missing_docs, reason = "BENCH_METRICS says what each is")]
-pub struct BenchSummary {
-    pub desired_force_n: Option<f64>,
-    pub force_mean_n: Option<f64>,
-    pub force_rms_error_n: Option<f64>,
-    pub force_rms_error_percent: Option<f64>,
-    pub force_largest_error_percent: Option<f64>,
-    pub coefficient_of_variation_percent: Option<f64>,
-    pub force_peak_n: Option<f64>,
-    pub regulator_delay_s: Option<f64>,
-    pub force_settling_time_s: Option<f64>,
-    pub force_overshoot_percent: Option<f64>,
-    pub force_slope_n_per_bar: Option<f64>,
-    pub force_linearity_percent: Option<f64>,
-    pub first_contact_s: Option<f64>,
-    pub impact_peak_n: Option<f64>,
-    pub stroke_min_mm: Option<f64>,
-    pub stroke_max_mm: Option<f64>,
-    pub stroke_margin_mm: Option<f64>,
-    pub measured_force_error_percent: Option<f64>,
-    pub measured_force_noise_n: Option<f64>,
-    pub estimated_force_rms_error_percent: Option<f64>,
-    pub estimated_force_coverage_percent: Option<f64>,
-    pub air_consumed_normal_litres: Option<f64>,
-    pub air_mass_balance_relative: Option<f64>,
-    pub duration_s: f64,
-    pub levels: Vec<LevelSummary>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub timing: Option<Timing>,
+metrics! {
+    /// The numbers of a bench run. What a run does not determine is `None`.
+    #[expect(missing_docs, reason = "BENCH_METRICS says what each is")]
+    BenchSummary,
+    /// All of them, in the order of summary.json.
+    BENCH_METRICS;
+    always {
+        desired_force_n: Option<f64> = "N", "desired force", "mean, where forces are commanded";
+        force_mean_n: Option<f64> = "N", "mean", "surface moving; else last level, steady";
+        force_rms_error_n: Option<f64> = "N", "RMS error", "about the desired force, else the mean";
+        force_rms_error_percent: Option<f64> = "%", "RMS error", "of the desired force, else the mean";
+        force_largest_error_percent: Option<f64> = "%", "largest error", "of the desired force, else the mean";
+        coefficient_of_variation_percent: Option<f64> = "%", "coefficient of variation", "standard deviation / mean";
+        force_peak_n: Option<f64> = "N", "largest", "of the whole run";
+        regulator_delay_s: Option<f64> = "s", "regulator's delay", "first command to 63 % of its change";
+        force_settling_time_s: Option<f64> = "s", "settling time", "last step with nothing else moving";
+        force_overshoot_percent: Option<f64> = "%", "overshoot", "the same command, of the change";
+        force_slope_n_per_bar: Option<f64> = "N/bar", "force over pressure", "straight line through the levels";
+        force_linearity_percent: Option<f64> = "%", "linearity error", "largest, of the highest level's force";
+        first_contact_s: Option<f64> = "s", "first contact", "since the start";
+        impact_peak_n: Option<f64> = "N", "impact peak", "first 50 ms of contact";
+        stroke_min_mm: Option<f64> = "mm", "smallest stroke", "since first contact, else the run";
+        stroke_max_mm: Option<f64> = "mm", "largest stroke", "since first contact, else the run";
+        stroke_margin_mm: Option<f64> = "mm", "stroke margin", "least distance to either end";
+        measured_force_error_percent: Option<f64> = "%", "load cell's error", "mean of reading over truth, less 1";
+        measured_force_noise_n: Option<f64> = "N", "load cell's noise", "reading less truth, about its mean";
+        estimated_force_rms_error_percent: Option<f64> = "%", "estimator's RMS error", "of the mean force, in contact";
+        estimated_force_coverage_percent: Option<f64> = "%", "estimator's coverage", "truth inside its 95 % band, in contact";
+        air_consumed_normal_litres: Option<f64> = "l", "air consumed", "drawn in, at 20 °C and 1 bar";
+        air_mass_balance_relative: Option<f64> = "1", "air balance, largest gap", "of the air in the device";
+        duration_s: f64 = "s", "simulated time", "the whole run";
+        levels: Vec<LevelSummary>;
+        #[serde(skip_serializing_if = "Option::is_none")]
+        timing: Option<Timing>;
+    }
+    sometimes {}
+    always {}
+    also [
+        entry("wall_time_s", "s", "wall time", "of the computation", |s| {
+            s.timing.map(|timing| timing.wall_time_s)
+        }),
+        entry("real_time_factor", "1", "real-time factor", "simulated time / wall time", |s| {
+            s.timing.map(|timing| timing.real_time_factor)
+        })
+    ]
 }
-
-/// All of them, in the order of summary.json.
-#[rustfmt::skip]
-pub const BENCH_METRICS: &[Metric<BenchSummary>] = &[
-    entry("desired_force_n", "N", "desired force",
-        "mean, where forces are commanded", |s| s.desired_force_n),
-    entry("force_mean_n", "N", "mean",
-        "surface moving; else last level, steady", |s| s.force_mean_n),
-    entry("force_rms_error_n", "N", "RMS error",
-        "about the desired force, else the mean", |s| s.force_rms_error_n),
-    entry("force_rms_error_percent", "%", "RMS error",
-        "of the desired force, else the mean", |s| s.force_rms_error_percent),
-    entry("force_largest_error_percent", "%", "largest error",
-        "of the desired force, else the mean", |s| s.force_largest_error_percent),
-    entry("coefficient_of_variation_percent", "%", "coefficient of variation",
-        "standard deviation / mean", |s| s.coefficient_of_variation_percent),
-    entry("force_peak_n", "N", "largest",
-        "of the whole run", |s| s.force_peak_n),
-    entry("regulator_delay_s", "s", "regulator's delay",
-        "first command to 63 % of its change", |s| s.regulator_delay_s),
-    entry("force_settling_time_s", "s", "settling time",
-        "last step with nothing else moving", |s| s.force_settling_time_s),
-    entry("force_overshoot_percent", "%", "overshoot",
-        "the same command, of the change", |s| s.force_overshoot_percent),
-    entry("force_slope_n_per_bar", "N/bar", "force over pressure",
-        "straight line through the levels", |s| s.force_slope_n_per_bar),
-    entry("force_linearity_percent", "%", "linearity error",
-        "largest, of the highest level's force", |s| s.force_linearity_percent),
-    entry("first_contact_s", "s", "first contact",
-        "since the start", |s| s.first_contact_s),
-    entry("impact_peak_n", "N", "impact peak",
-        "first 50 ms of contact", |s| s.impact_peak_n),
-    entry("stroke_min_mm", "mm", "smallest stroke",
-        "since first contact, else the run", |s| s.stroke_min_mm),
-    entry("stroke_max_mm", "mm", "largest stroke",
-        "since first contact, else the run", |s| s.stroke_max_mm),
-    entry("stroke_margin_mm", "mm", "stroke margin",
-        "least distance to either end", |s| s.stroke_margin_mm),
-    entry("measured_force_error_percent", "%", "load cell's error",
-        "mean of reading over truth, less 1", |s| s.measured_force_error_percent),
-    entry("measured_force_noise_n", "N", "load cell's noise",
-        "reading less truth, about its mean", |s| s.measured_force_noise_n),
-    entry("estimated_force_rms_error_percent", "%", "estimator's RMS error",
-        "of the mean force, in contact", |s| s.estimated_force_rms_error_percent),
-    entry("estimated_force_coverage_percent", "%", "estimator's coverage",
-        "truth inside its 95 % band, in contact", |s| s.estimated_force_coverage_percent),
-    entry("air_consumed_normal_litres", "l", "air consumed",
-        "drawn in, at 20 °C and 1 bar", |s| s.air_consumed_normal_litres),
-    entry("air_mass_balance_relative", "1", "air balance, largest gap",
-        "of the air in the device", |s| s.air_mass_balance_relative),
-    entry("duration_s", "s", "simulated time",
-        "the whole run", |s| Some(s.duration_s)),
-    entry("wall_time_s", "s", "wall time",
-        "of the computation", |s| s.timing.map(|timing| timing.wall_time_s)),
-    entry("real_time_factor", "1", "real-time factor",
-        "simulated time / wall time", |s| s.timing.map(|timing| timing.real_time_factor)),
-];
 
 /// Measures a bench run.
 ///

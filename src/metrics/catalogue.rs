@@ -1,12 +1,10 @@
-//! The list of metrics: name, unit, meaning in short and where the value stands.
+//! What a metric is: name, unit, meaning in short and where the value stands.
 //!
-//! Bounds are looked up here and reports are made from it; docs/METRICS.md has the full definitions.
-
-use super::Summary;
+//! Bounds are looked up in their lists and reports are made from them; docs/METRICS.md has the full definitions.
 
 /// One number of a run.
 #[derive(Debug, Clone, Copy)]
-pub struct Metric<S = Summary> {
+pub struct Metric<S> {
     /// Key in summary.json, unit included.
     pub name: &'static str,
     /// Unit as it is printed.
@@ -59,138 +57,40 @@ pub(super) const fn entry<S>(
     }
 }
 
-/// Every metric, in the order of summary.json.
-#[rustfmt::skip]
-pub const METRICS: &[Metric] = &[
-    entry("desired_force_n", "N", "desired force",
-        "what the scenario asks for", |s| Some(s.desired_force_n)),
-    entry("force_mean_n", "N", "mean",
-        "over the following phase", |s| s.force_mean_n),
-    entry("force_standard_deviation_n", "N", "standard deviation",
-        "about the mean", |s| s.force_standard_deviation_n),
-    entry("coefficient_of_variation_percent", "%", "coefficient of variation",
-        "standard deviation / mean", |s| s.coefficient_of_variation_percent),
-    entry("force_rms_error_n", "N", "RMS error",
-        "of force - desired, following", |s| s.force_rms_error_n),
-    entry("force_rms_error_percent", "%", "RMS error",
-        "of the desired force", |s| s.force_rms_error_percent),
-    entry("largest_deviation_n", "N", "largest deviation",
-        "largest |force - desired|", |s| s.largest_deviation_n),
-    entry("within_5_percent_share_percent", "%", "within 5 % of desired",
-        "share of the length followed", |s| s.within_5_percent_share_percent),
-    entry("within_10_percent_share_percent", "%", "within 10 % of desired",
-        "share of the length followed", |s| s.within_10_percent_share_percent),
-    entry("loss_of_contact_share_percent", "%", "contact lost",
-        "share of the length followed", |s| s.loss_of_contact_share_percent),
-    entry("friction_force_mean_n", "N", "friction, mean",
-        "across the contact normal", |s| s.friction_force_mean_n),
-    entry("force_peak_approach_n", "N", "largest, approach",
-        "of the whole phase", |s| s.force_peak_approach_n),
-    entry("force_peak_engage_n", "N", "largest, engage",
-        "of the whole phase", |s| s.force_peak_engage_n),
-    entry("force_peak_follow_n", "N", "largest, follow",
-        "of the whole phase", |s| s.force_peak_follow_n),
-    entry("force_peak_retract_n", "N", "largest, retract",
-        "of the whole phase", |s| s.force_peak_retract_n),
-    entry("engagement_peak_n", "N", "peak",
-        "first touch to start of follow", |s| s.engagement_peak_n),
-    entry("engagement_overshoot_percent", "%", "overshoot",
-        "peak above desired force", |s| s.engagement_overshoot_percent),
-    entry("settling_time_s", "s", "settling time",
-        "touch until it stays in ±5 %", |s| s.settling_time_s),
-    entry("stroke_used_mm", "mm", "stroke used",
-        "largest less smallest stroke", |s| s.stroke_used_mm),
-    entry("stroke_min_mm", "mm", "smallest stroke",
-        "over the following phase", |s| s.stroke_min_mm),
-    entry("stroke_max_mm", "mm", "largest stroke",
-        "over the following phase", |s| s.stroke_max_mm),
-    entry("stroke_margin_mm", "mm", "stroke margin",
-        "least distance to either end", |s| s.stroke_margin_mm),
-    entry("path_error_rms_um", "µm", "lateral error, RMS",
-        "tool tip beside planned path", |s| s.path_error_rms_um),
-    entry("path_error_max_um", "µm", "lateral error, largest",
-        "tool tip beside planned path", |s| s.path_error_max_um),
-    entry("path_lag_rms_um", "µm", "lag, RMS",
-        "tool tip behind its plan", |s| s.path_lag_rms_um),
-    entry("path_lag_max_um", "µm", "lag, largest",
-        "tool tip behind its plan", |s| s.path_lag_max_um),
-    entry("path_length_mm", "mm", "length followed",
-        "along the planned path", |s| s.path_length_mm),
-    entry("feed_mean_mm_per_s", "mm/s", "feed, mean",
-        "length followed / its time", |s| s.feed_mean_mm_per_s),
-    entry("follow_duration_s", "s", "time of following",
-        "first to last sample of it", |s| s.follow_duration_s),
-    entry("joint_torque_share_percent", "%", "joint torque / limit",
-        "largest of all joints", |s| s.joint_torque_share_percent),
-    entry("drives_saturated_s", "s", "drives at their limit",
-        "time of the run", |s| s.drives_saturated_s),
-    entry("air_mass_balance_relative", "1", "air balance, largest gap",
-        "of the air in the chambers", |s| s.air_mass_balance_relative),
-    entry("burr_before_max_mm", "mm", "burr before, highest",
-        "along the edge", |s| s.burr_before_max_mm),
-    entry("chamfer_leg_mean_mm", "mm", "chamfer leg, mean",
-        "along the edge", |s| s.chamfer_leg_mean_mm),
-    entry("chamfer_leg_standard_deviation_mm", "mm", "chamfer leg, spread",
-        "standard deviation of it", |s| s.chamfer_leg_standard_deviation_mm),
-    entry("chamfer_leg_min_mm", "mm", "chamfer leg, least",
-        "along the edge", |s| s.chamfer_leg_min_mm),
-    entry("chamfer_leg_max_mm", "mm", "chamfer leg, largest",
-        "along the edge", |s| s.chamfer_leg_max_mm),
-    entry("residual_burr_max_mm", "mm", "burr left, highest",
-        "along the edge", |s| s.residual_burr_max_mm),
-    entry("residual_burr_share_percent", "%", "burr left",
-        "share of the edge", |s| s.residual_burr_share_percent),
-    entry("out_of_tolerance_share_percent", "%", "out of tolerance",
-        "share of the edge", |s| s.out_of_tolerance_share_percent),
-    entry("ends_chamfer_leg_min_mm", "mm", "ends, leg, least",
-        "at the ends of the edge", |s| s.ends_chamfer_leg_min_mm),
-    entry("ends_chamfer_leg_max_mm", "mm", "ends, leg, largest",
-        "at the ends of the edge", |s| s.ends_chamfer_leg_max_mm),
-    entry("ends_residual_burr_max_mm", "mm", "ends, highest burr",
-        "at the ends of the edge", |s| s.ends_residual_burr_max_mm),
-    entry("ends_out_of_tolerance_share_percent", "%", "ends, out of tolerance",
-        "share of the ends", |s| s.ends_out_of_tolerance_share_percent),
-    entry("whole_edge_out_of_tolerance_share_percent", "%", "out of tolerance, whole",
-        "share of the whole edge", |s| s.whole_edge_out_of_tolerance_share_percent),
-    entry("ends_length_mm", "mm", "ends, length of each",
-        "a contact length", |s| s.ends_length_mm),
-    entry("section_removed_mean_mm2", "mm2", "section removed, mean",
-        "of burr and edge", |s| s.section_removed_mean_mm2),
-    entry("section_variation_percent", "%", "section, variation",
-        "standard deviation / mean", |s| s.section_variation_percent),
-    entry("removed_volume_mm3", "mm3", "volume removed",
-        "of burr and edge", |s| s.removed_volume_mm3),
-    entry("removal_rate_mean_mm3_per_s", "mm3/s", "removal rate, mean",
-        "while cutting", |s| s.removal_rate_mean_mm3_per_s),
-    entry("spindle_power_max_w", "W", "spindle power, largest",
-        "at the tool", |s| s.spindle_power_max_w),
-    entry("spindle_energy_kj", "kJ", "spindle energy",
-        "at the tool", |s| s.spindle_energy_kj),
-    entry("tool_wear_kj", "kJ", "tool wear",
-        "work of force and speed", |s| s.tool_wear_kj),
-    entry("air_used_g", "g", "air used",
-        "entered the device", |s| s.air_used_g),
-    entry("duration_s", "s", "cycle time",
-        "approach to retract", |s| Some(s.duration_s)),
-    entry("wall_time_s", "s", "wall time",
-        "of the computation", |s| s.timing.map(|timing| timing.wall_time_s)),
-    entry("real_time_factor", "1", "real-time factor",
-        "simulated time / wall time", |s| s.timing.map(|timing| timing.real_time_factor)),
-];
+/// Numbers of a summary, each declared once: its field, named as its key in summary.json, with its unit, its name for people and its meaning in a few words,
+/// and the list of all. Those of the second block stand in the file only where the run determines them; `also` are numbers that are no fields.
+macro_rules! metrics {
+    (
+        $(#[$about:meta])* $summary:ident, $(#[$all:meta])* $list:ident;
+        always { $($(#[$a:meta])* $always:ident: $at:ty $(= $au:literal, $al:literal, $am:literal)?;)* }
+        sometimes { $($(#[$s:meta])* $some:ident: $st:ty $(= $su:literal, $sl:literal, $sm:literal)?;)* }
+        always { $($(#[$l:meta])* $last:ident: $lt:ty $(= $lu:literal, $ll:literal, $lm:literal)?;)* }
+        also [$($also:expr),*]
+    ) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+        pub struct $summary {
+            $($(#[$a])* pub $always: $at,)*
+            $($(#[$s])* #[serde(default, skip_serializing_if = "Option::is_none")] pub $some: $st,)*
+            $($(#[$l])* pub $last: $lt,)*
+        }
 
-/// The metric of a name.
-#[must_use]
-pub fn metric(name: &str) -> Option<&'static Metric> {
-    METRICS.iter().find(|metric| metric.name == name)
+        $(#[$all])*
+        pub const $list: &[$crate::metrics::Metric<$summary>] = &[
+            $($($crate::metrics::catalogue::entry(stringify!($always), $au, $al, $am, |s| s.$always.into()),)?)*
+            $($($crate::metrics::catalogue::entry(stringify!($some), $su, $sl, $sm, |s| s.$some.into()),)?)*
+            $($($crate::metrics::catalogue::entry(stringify!($last), $lu, $ll, $lm, |s| s.$last.into()),)?)*
+            $($also),*
+        ];
+    };
 }
+pub(super) use metrics;
 
 #[cfg(test)]
 mod tests {
     use super::super::Timing;
-    use super::super::summarise;
     use super::super::test_recordings::{Builder, limits};
-    use super::*;
-
+    use super::super::{METRICS, metric, summarise};
     /// Keys of summary.json that are no numbers to set bounds on.
     const OTHER_KEYS: [&str; 5] = [
         "most_loaded_joint",

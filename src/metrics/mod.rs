@@ -26,14 +26,15 @@ mod test_recordings;
 mod window;
 
 pub use bench::{BENCH_METRICS, BenchLimits, BenchSummary, LevelSummary, summarise_bench};
-pub use catalogue::{METRICS, Metric, metric};
+pub use catalogue::Metric;
 pub use edge::EdgeLimits;
 pub use error::MetricsError;
 pub use expect::{BoundCheck, check, check_cell, validate, validate_cell};
 pub use label::{FINISHED, Label, labels, metric_names, most_telling};
 pub use limits::{FOLLOW_PHASE, NARROW_BAND, SummaryLimits, TOUCH_SHARE, WIDE_BAND};
-pub use passes::PASS_METRICS;
-pub use summary::{ForceTenth, JointTorqueShare, PassSummary, Summary, Timing};
+pub use summary::{
+    ForceTenth, JointTorqueShare, METRICS, PASS_METRICS, PassSummary, Summary, Timing, metric,
+};
 
 use crate::recording::Recording;
 use crate::recording::csv::EdgeProfile;

@@ -1,50 +1,8 @@
 //! The passes along the edge, each by the numbers of its own following phase and its own desired force.
 
-use super::catalogue::{Metric, entry};
 use super::window::Window;
 use super::{FOLLOW_PHASE, MetricsError, PassSummary, Summary, SummaryLimits, force, motion};
 use crate::recording::Recording;
-
-/// Every number of a pass, in the order of summary.json.
-#[rustfmt::skip]
-pub const PASS_METRICS: &[Metric<PassSummary>] = &[
-    entry("desired_force_n", "N", "desired force",
-        "what the pass asks for", |s| Some(s.desired_force_n)),
-    entry("force_mean_n", "N", "mean",
-        "over the pass", |s| s.force_mean_n),
-    entry("force_standard_deviation_n", "N", "standard deviation",
-        "about the mean", |s| s.force_standard_deviation_n),
-    entry("coefficient_of_variation_percent", "%", "coefficient of variation",
-        "standard deviation / mean", |s| s.coefficient_of_variation_percent),
-    entry("force_rms_error_n", "N", "RMS error",
-        "of force - desired", |s| s.force_rms_error_n),
-    entry("force_rms_error_percent", "%", "RMS error",
-        "of the desired force", |s| s.force_rms_error_percent),
-    entry("largest_deviation_n", "N", "largest deviation",
-        "largest |force - desired|", |s| s.largest_deviation_n),
-    entry("within_5_percent_share_percent", "%", "within 5 % of desired",
-        "share of the length followed", |s| s.within_5_percent_share_percent),
-    entry("within_10_percent_share_percent", "%", "within 10 % of desired",
-        "share of the length followed", |s| s.within_10_percent_share_percent),
-    entry("loss_of_contact_share_percent", "%", "contact lost",
-        "share of the length followed", |s| s.loss_of_contact_share_percent),
-    entry("force_peak_follow_n", "N", "largest",
-        "of the pass", |s| s.force_peak_follow_n),
-    entry("path_error_rms_um", "µm", "lateral error, RMS",
-        "tool tip beside planned path", |s| s.path_error_rms_um),
-    entry("path_error_max_um", "µm", "lateral error, largest",
-        "tool tip beside planned path", |s| s.path_error_max_um),
-    entry("path_lag_rms_um", "µm", "lag, RMS",
-        "tool tip behind its plan", |s| s.path_lag_rms_um),
-    entry("path_lag_max_um", "µm", "lag, largest",
-        "tool tip behind its plan", |s| s.path_lag_max_um),
-    entry("path_length_mm", "mm", "length followed",
-        "along the planned path", |s| s.path_length_mm),
-    entry("feed_mean_mm_per_s", "mm/s", "feed, mean",
-        "length followed / its time", |s| s.feed_mean_mm_per_s),
-    entry("follow_duration_s", "s", "time of following",
-        "first to last sample of it", |s| s.follow_duration_s),
-];
 
 /// The passes of a recording that were begun.
 pub(super) fn measure(
@@ -100,6 +58,7 @@ fn of(
 
 #[cfg(test)]
 mod tests {
+    use super::super::PASS_METRICS;
     use super::super::test_recordings::{Builder, assert_near, limits};
     use super::*;
     use crate::recording::PhaseSpan;

@@ -1,5 +1,6 @@
 //! A job as it is asked for, and the stretches that it is planned in.
 
+use crate::listed::listed;
 use glam::DVec3;
 use glamx::DPose3;
 
@@ -13,28 +14,20 @@ use crate::collision::{CollisionModel, Positions};
 /// Distance between the knots of the joint angles' spline [m].
 pub(super) const KNOT_SPACING: f64 = 1e-3;
 
-/// Part of the job.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Phase {
-    /// Towards the edge.
-    Approach,
-    /// Onto the edge, then at rest until the force has settled.
-    Engage,
-    /// Along the edge.
-    Follow,
-    /// Away from it.
-    Retract,
-}
-
-impl Phase {
+listed! {
+    /// Part of the job.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Phase,
     /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Approach => "approach",
-            Self::Engage => "engage",
-            Self::Follow => "follow",
-            Self::Retract => "retract",
-        }
+    name: &'static str {
+        /// Towards the edge.
+        Approach = "approach",
+        /// Onto the edge, then at rest until the force has settled.
+        Engage = "engage",
+        /// Along the edge.
+        Follow = "follow",
+        /// Away from it.
+        Retract = "retract",
     }
 }
 

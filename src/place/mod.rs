@@ -3,6 +3,7 @@
 mod footprint;
 mod picture;
 
+use crate::listed::listed;
 use glam::DVec3;
 use glamx::DPose3;
 use rayon::prelude::*;
@@ -29,45 +30,24 @@ pub struct PlaceGrid {
     pub rolls: usize,
 }
 
-/// Why a job cannot be done.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Hindrance {
-    /// Some of it is out of reach, or beyond an axis's range.
-    Reach,
-    /// The arm is all but singular, or would have to change its posture.
-    Singularity,
-    /// Bodies come too near to each other.
-    Collision,
-    /// An axis is too weak.
-    Torque,
-    /// An axis is too slow for the feed.
-    Speed,
-    /// The tool cannot stand so to the edge.
-    Edge,
-}
-
-impl Hindrance {
-    /// All of them.
-    pub const ALL: [Self; 6] = [
-        Self::Reach,
-        Self::Singularity,
-        Self::Collision,
-        Self::Torque,
-        Self::Speed,
-        Self::Edge,
-    ];
-
+listed! {
+    /// Why a job cannot be done.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+    pub enum Hindrance: 6,
     /// Its name.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Reach => "reach",
-            Self::Singularity => "singularity",
-            Self::Collision => "collision",
-            Self::Torque => "torque",
-            Self::Speed => "speed",
-            Self::Edge => "edge",
-        }
+    name: &'static str {
+        /// Some of it is out of reach, or beyond an axis's range.
+        Reach = "reach",
+        /// The arm is all but singular, or would have to change its posture.
+        Singularity = "singularity",
+        /// Bodies come too near to each other.
+        Collision = "collision",
+        /// An axis is too weak.
+        Torque = "torque",
+        /// An axis is too slow for the feed.
+        Speed = "speed",
+        /// The tool cannot stand so to the edge.
+        Edge = "edge",
     }
 }
 

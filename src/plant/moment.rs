@@ -1,42 +1,35 @@
 //! The variables of one moment, on which a term at a port may depend.
 
-/// A variable.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Variable {
-    /// Time since the start of the recording [s].
-    Time,
-    /// Stroke [m].
-    Stroke,
-    /// Speed of extension [m/s].
-    Velocity,
-    /// Pressure in chamber 1 [Pa absolute].
-    ChamberPressure,
-    /// Pressure in chamber 1 less that in chamber 2 [Pa].
-    PressureDifference,
-    /// Air that comes in [kg/s].
-    MassFlow,
-    /// Set pressure [Pa gauge].
-    SetPressure,
-    /// Where the surface stands [m].
-    Surface,
-    /// Contact force [N].
-    ContactForce,
+use crate::listed::listed;
+
+listed! {
+    /// A variable.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+    pub enum Variable: 9,
+    /// Name in an answer.
+    name: &'static str {
+        /// Time since the start of the recording [s].
+        Time = "time",
+        /// Stroke [m].
+        Stroke = "stroke_m",
+        /// Speed of extension [m/s].
+        Velocity = "velocity",
+        /// Pressure in chamber 1 [Pa absolute].
+        ChamberPressure = "chamber_pressure",
+        /// Pressure in chamber 1 less that in chamber 2 [Pa].
+        PressureDifference = "pressure_difference",
+        /// Air that comes in [kg/s].
+        MassFlow = "mass_flow",
+        /// Set pressure [Pa gauge].
+        SetPressure = "set_pressure",
+        /// Where the surface stands [m].
+        Surface = "surface_m",
+        /// Contact force [N].
+        ContactForce = "contact_force",
+    }
 }
 
 impl Variable {
-    /// All of them.
-    pub const ALL: [Self; 9] = [
-        Self::Time,
-        Self::Stroke,
-        Self::Velocity,
-        Self::ChamberPressure,
-        Self::PressureDifference,
-        Self::MassFlow,
-        Self::SetPressure,
-        Self::Surface,
-        Self::ContactForce,
-    ];
-
     /// Its unit as a key ends with it.
     pub fn suffix(self) -> &'static str {
         match self {
@@ -46,21 +39,6 @@ impl Variable {
             Self::ChamberPressure | Self::PressureDifference | Self::SetPressure => "pa",
             Self::MassFlow => "kg_per_s",
             Self::ContactForce => "n",
-        }
-    }
-
-    /// Name in an answer.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Time => "time",
-            Self::Stroke => "stroke_m",
-            Self::Velocity => "velocity",
-            Self::ChamberPressure => "chamber_pressure",
-            Self::PressureDifference => "pressure_difference",
-            Self::MassFlow => "mass_flow",
-            Self::SetPressure => "set_pressure",
-            Self::Surface => "surface_m",
-            Self::ContactForce => "contact_force",
         }
     }
 }

@@ -1,60 +1,47 @@
 //! Where a term beside the rig's device, contact and sensors may enter.
 
-/// A port.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Port {
-    /// A force on the piston along extension [N].
-    PistonForce,
-    /// Dry friction of the piston beside that of its seals, against the motion [N].
-    Friction,
-    /// A pressure added to the set pressure, before the regulator follows it [Pa].
-    SetPressure,
-    /// A pressure added to the regulator's outlet [Pa].
-    OutletPressure,
-    /// Air into chamber 1 [kg/s].
-    FirstChamberFlow,
-    /// Air into chamber 2 [kg/s].
-    SecondChamberFlow,
-    /// Area of a leak from chamber 1 to the atmosphere, with the valve's discharge coefficient [m2].
-    FirstChamberLeak,
-    /// The same from chamber 2 [m2].
-    SecondChamberLeak,
-    /// Area added to the valve's supply orifice [m2].
-    SupplyOrifice,
-    /// Area added to its exhaust orifice [m2].
-    ExhaustOrifice,
-    /// A displacement of the surface along extension [m].
-    Surface,
-    /// Added to the stiffness of the contact [N/m].
-    ContactStiffness,
-    /// Added to the load cell's reading [N].
-    ForceReading,
-    /// Added to the position sensor's reading [m].
-    StrokeReading,
-    /// Added to the pressure sensor's reading [Pa].
-    PressureReading,
+use crate::listed::listed;
+
+listed! {
+    /// A port.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+    pub enum Port: 15,
+    /// Name in files and answers.
+    name: &'static str {
+        /// A force on the piston along extension [N].
+        PistonForce = "piston_force",
+        /// Dry friction of the piston beside that of its seals, against the motion [N].
+        Friction = "friction",
+        /// A pressure added to the set pressure, before the regulator follows it [Pa].
+        SetPressure = "set_pressure",
+        /// A pressure added to the regulator's outlet [Pa].
+        OutletPressure = "outlet_pressure",
+        /// Air into chamber 1 [kg/s].
+        FirstChamberFlow = "first_chamber_flow",
+        /// Air into chamber 2 [kg/s].
+        SecondChamberFlow = "second_chamber_flow",
+        /// Area of a leak from chamber 1 to the atmosphere, with the valve's discharge coefficient [m2].
+        FirstChamberLeak = "first_chamber_leak",
+        /// The same from chamber 2 [m2].
+        SecondChamberLeak = "second_chamber_leak",
+        /// Area added to the valve's supply orifice [m2].
+        SupplyOrifice = "supply_orifice",
+        /// Area added to its exhaust orifice [m2].
+        ExhaustOrifice = "exhaust_orifice",
+        /// A displacement of the surface along extension [m].
+        Surface = "surface",
+        /// Added to the stiffness of the contact [N/m].
+        ContactStiffness = "contact_stiffness",
+        /// Added to the load cell's reading [N].
+        ForceReading = "force_reading",
+        /// Added to the position sensor's reading [m].
+        StrokeReading = "stroke_reading",
+        /// Added to the pressure sensor's reading [Pa].
+        PressureReading = "pressure_reading",
+    }
 }
 
 impl Port {
-    /// All of them.
-    pub const ALL: [Self; 15] = [
-        Self::PistonForce,
-        Self::Friction,
-        Self::SetPressure,
-        Self::OutletPressure,
-        Self::FirstChamberFlow,
-        Self::SecondChamberFlow,
-        Self::FirstChamberLeak,
-        Self::SecondChamberLeak,
-        Self::SupplyOrifice,
-        Self::ExhaustOrifice,
-        Self::Surface,
-        Self::ContactStiffness,
-        Self::ForceReading,
-        Self::StrokeReading,
-        Self::PressureReading,
-    ];
-
     /// Whether it changes what a sensor says, and nothing else.
     pub fn is_reading(self) -> bool {
         matches!(
@@ -69,27 +56,6 @@ impl Port {
             self,
             Self::FirstChamberLeak | Self::SecondChamberLeak | Self::Friction
         )
-    }
-
-    /// Name in files and answers.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::PistonForce => "piston_force",
-            Self::Friction => "friction",
-            Self::SetPressure => "set_pressure",
-            Self::OutletPressure => "outlet_pressure",
-            Self::FirstChamberFlow => "first_chamber_flow",
-            Self::SecondChamberFlow => "second_chamber_flow",
-            Self::FirstChamberLeak => "first_chamber_leak",
-            Self::SecondChamberLeak => "second_chamber_leak",
-            Self::SupplyOrifice => "supply_orifice",
-            Self::ExhaustOrifice => "exhaust_orifice",
-            Self::Surface => "surface",
-            Self::ContactStiffness => "contact_stiffness",
-            Self::ForceReading => "force_reading",
-            Self::StrokeReading => "stroke_reading",
-            Self::PressureReading => "pressure_reading",
-        }
     }
 
     /// Its unit as a key ends with it.

@@ -1,7 +1,7 @@
 //! Names and units for people, from keys that end in their unit.
 
 use super::significant;
-use crate::keys::units::{Unit, stem};
+use crate::unit::{Unit, stem};
 
 /// Suffixes of metrics that no file key has.
 const OTHERS: [(&str, &str); 3] = [("_percent", "%"), ("_nl", "Nl"), ("_g", "g")];

@@ -19,13 +19,14 @@ pub mod schema;
 #[cfg(feature = "parquet")]
 pub mod table;
 pub mod thousandfold;
-pub mod unit;
 
+pub use crate::unit::SiUnit as Unit;
 pub use error::RecordingError;
-pub use unit::Unit;
 
 use std::collections::BTreeSet;
 use std::ops::Range;
+
+use crate::unit::{column_name, parse_column_name};
 
 /// One signal, sampled at the recording's times.
 #[derive(Debug, Clone, PartialEq)]
@@ -219,8 +220,7 @@ fn quantity_fault(quantity: &str, unit: Unit) -> Option<&'static str> {
         Some("a name is made of lower-case letters, digits and underscores")
     } else if quantity == schema::TIME || quantity == schema::PHASE {
         Some("the name is kept for the recording's own columns")
-    } else if unit::parse_column_name(&unit::column_name(quantity, unit)) != Some((quantity, unit))
-    {
+    } else if parse_column_name(&column_name(quantity, unit)) != Some((quantity, unit)) {
         Some("with its unit appended it reads as another unit")
     } else {
         None

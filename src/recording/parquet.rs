@@ -1,7 +1,7 @@
 //! Recordings as Parquet tables: `samples.parquet`.
 //!
 //! One row per sample, one column per channel, the unit at the end of the column's name
-//! (`contact_force_n`, [`super::unit`]). `time_s` comes first; `phase` is text. Where a channel has
+//! (`contact_force_n`, [`crate::unit`]). `time_s` comes first; `phase` is text. Where a channel has
 //! no value the cell is null. The file's key-value metadata hold the layout's version, what each
 //! column means, and whatever the caller adds. Equal recordings give equal bytes: nothing in the
 //! file depends on the clock or the machine.
@@ -23,8 +23,8 @@ use arrow::compute::{cast, concat_batches};
 use arrow::datatypes::{DataType, Field, Float64Type, Int32Type, Schema};
 
 use super::atomic::write_atomic;
-use super::unit::{column_name, parse_column_name};
 use super::{PhaseSpan, RecordedChannel, Recording, RecordingError, Unit, schema};
+use crate::unit::{column_name, parse_column_name};
 
 /// Version of the table's layout, raised when a reader of the old one would misread the new one.
 pub const LAYOUT_VERSION: &str = "1";

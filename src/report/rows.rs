@@ -76,7 +76,7 @@ pub(super) struct ReportRow {
     /// Part of the report.
     pub(super) part: &'static str,
     /// The metric.
-    pub(super) metric: &'static Metric,
+    pub(super) metric: &'static Metric<Summary>,
     /// Its value in the metric's unit.
     pub(super) value: Option<f64>,
     /// Its meaning in short, or a fact that belongs to it.

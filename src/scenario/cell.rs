@@ -11,13 +11,13 @@ use super::judged::JudgedValue;
 use crate::effects::PresentEffect;
 use crate::keys::declaration::{Below, Filled, keys};
 use crate::keys::schema::type_schema;
-use crate::keys::units::Unit;
 use crate::physics::cutting_force::CuttingForce;
 use crate::physics::removal_law::RemovalLaw;
 use crate::physics::spindle::Spindle;
 use crate::plant::{Nominal, PlantParameters, registry};
 use crate::removal::TurningTool;
 use crate::sensing::SensingParameters;
+use crate::unit::Unit;
 
 /// A whole cell and its job.
 #[derive(Debug, Clone)]

@@ -9,8 +9,8 @@ use crate::keys::check::Section;
 use crate::keys::declaration::Table;
 use crate::keys::document::{Document, read_text};
 use crate::keys::error::ScenarioError;
-use crate::keys::units::Unit;
 use crate::plant::{ContactParameters, Number, PlantParameters, registry};
+use crate::unit::Unit;
 
 mod keys;
 mod parts;

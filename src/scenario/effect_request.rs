@@ -3,8 +3,8 @@
 use super::variation::KeyValue;
 use crate::effects::{Effect, every};
 use crate::keys::suggestion::nearest;
-use crate::keys::units::Unit;
 use crate::plant::PlantParameters;
+use crate::unit::Unit;
 
 /// Key of the joint that an effect is about.
 const JOINT: &str = "joint";

@@ -27,8 +27,8 @@ use crate::keys::check::{Section, checked};
 use crate::keys::document::Document;
 use crate::keys::error::ScenarioError;
 use crate::keys::suggestion::{join, nearest};
-use crate::keys::units::Unit;
 use crate::plant::PlantParameters;
+use crate::unit::Unit;
 use keys::{JOINT, KeyTable, LISTED, NAME};
 
 pub(super) use keys::EffectKeys;

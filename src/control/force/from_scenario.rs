@@ -13,11 +13,11 @@ use super::{
     StabilityLimit,
 };
 use crate::device::DeviceParameters;
-use crate::keys::units::Unit;
 use crate::physics::push_only::PushOnly;
 use crate::plant::{Nominal, PlantParameters};
 use crate::scenario::{ControllerScenario, ForceLaw, ScenarioError, attainable_set_pressure};
 use crate::sensing::{CommandChain, SensingParameters};
+use crate::unit::Unit;
 
 /// A parameter's name here and the key that gives it in a scenario file.
 const KEYS: [(&str, &str); 6] = [

@@ -3,9 +3,9 @@
 use crate::keys::check::Section;
 use crate::keys::document::Document;
 use crate::keys::suggestion::advice;
-use crate::keys::units::Unit;
 use crate::scenario::ScenarioError;
 use crate::scenario::sections::{model_sections, scenario_sections};
+use crate::unit::Unit;
 
 use super::{BORE, CatalogueEntry, Domain, ROD, Variable};
 use crate::design::catalogue::{STANDARD_CYLINDERS, standard_rod};

@@ -2,6 +2,7 @@
 
 use super::fault::{DataFault, Kind};
 use crate::diagnosis::recordings::clean::{clean, departures};
+use crate::diagnosis::recordings::device::Device;
 use crate::diagnosis::recordings::input::{DiagnosisInput, OTHER_NOISE};
 use crate::plant::CHANNELS;
 use crate::stats::median;
@@ -29,12 +30,12 @@ fn is_white(time: &[f64], values: &[f64]) -> bool {
 
 /// Channels whose noise is clearly more than their sheet says, by the median over the recordings.
 pub(super) fn louder(case: &DiagnosisInput) -> Vec<DataFault> {
-    let mass = case.believed.device.moving_mass;
     let cleanings: Vec<_> = (case.recordings.iter())
         .map(|recording| {
             let mut readings = recording.recorded.readings.clone();
             let inputs = &recording.recorded.inputs;
-            let mut cleaning = clean(&inputs.time, &mut readings, &case.noise, mass);
+            let mut cleaning =
+                clean::<Device>(&inputs.time, &mut readings, &case.noise, &case.believed);
             for (noise, values) in cleaning.noise.iter_mut().zip(&readings) {
                 *noise = noise.filter(|_| is_white(&inputs.time, values));
             }

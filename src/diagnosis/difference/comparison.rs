@@ -7,6 +7,7 @@ use super::regime::{TIME, regimes, values_of};
 use crate::diagnosis::answer::finding::Diagnosis;
 use crate::diagnosis::flange::Run;
 use crate::diagnosis::recordings::clean::clean;
+use crate::diagnosis::recordings::device::Device;
 use crate::diagnosis::recordings::input::{DiagnosisInput, NamedRecording};
 use crate::plant::{CHANNELS, Channel, DeviceParts, PlantInputs, PlantParameters, simulate};
 
@@ -132,13 +133,8 @@ impl Diagnosis {
     fn cleaned(&self, case: &DiagnosisInput, unseen: &NamedRecording) -> Channels {
         let mut readings = unseen.recorded.readings.clone();
         if readings.iter().flatten().any(|value| value.is_finite()) {
-            let mass = self.believed.device.moving_mass;
-            clean(
-                &unseen.recorded.inputs.time,
-                &mut readings,
-                &case.noise,
-                mass,
-            );
+            let time = &unseen.recorded.inputs.time;
+            clean::<Device>(time, &mut readings, &case.noise, &self.believed);
         }
         readings
     }

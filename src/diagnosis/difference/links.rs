@@ -7,9 +7,9 @@
 use super::localise::robust_rms;
 use crate::diagnosis::fit::free::Free;
 use crate::diagnosis::fit::with_values;
-use crate::diagnosis::recordings::evidence::{Evidence, Measured, Prediction, by_channel};
+use crate::diagnosis::recordings::evidence::{Evidence, Measured, Prediction, by_channel, starts};
 use crate::diagnosis::settings::HUBER;
-use crate::plant::{CHANNELS, Channel, PlantParameters, PlantTrajectory, Trajectory, readings};
+use crate::plant::{Channel, PlantParameters, PlantTrajectory, Trajectory, readings};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -199,6 +199,10 @@ fn at_regulator(evidence: &Evidence, held: &Prediction) -> Vec<f64> {
         .collect()
 }
 
+/// Channels that see a force on the piston: load cell and accelerometer.
+pub(in crate::diagnosis) const ON_THE_PISTON: [usize; 2] =
+    [Channel::Force as usize, Channel::Acceleration as usize];
+
 /// The force that the piston lacks at a sample [N]: M (a_m - g) + F_m - P, P that of the chambers, seals and end stops along the measured motion.
 pub(in crate::diagnosis) fn lacking(
     measured: &Measured,
@@ -223,15 +227,14 @@ fn on_the_piston(evidence: &Evidence, held: &Prediction, deviation: f64) -> Vec<
     let plant = &held.plant;
     let shares = evidence.shares(ROUGH_TIME, false);
     let mut all = Vec::new();
-    let mut first = 0;
-    for (measured, trajectory) in evidence.recordings.iter().zip(&held.trajectories) {
+    let recordings = evidence.recordings.iter().zip(&held.trajectories);
+    for ((measured, trajectory), first) in recordings.zip(starts(evidence)) {
         let count = measured.inputs.time.len();
         for i in 0..count {
             let lacking = lacking(measured, &trajectory.truth, plant, i);
             let share = shares[first + 2 * count + i].min(shares[first + 3 * count + i]);
             all.push(share * lacking / deviation);
         }
-        first += CHANNELS.len() * count;
     }
     all
 }
@@ -242,8 +245,7 @@ fn in_contact(evidence: &Evidence, held: &Prediction) -> Vec<f64> {
     let shares = evidence.shares(ROUGH_TIME, false);
     let [_, stroke_noise, force_noise, _] = evidence.noise;
     let mut all = Vec::new();
-    let mut first = 0;
-    for measured in &evidence.recordings {
+    for (measured, first) in evidence.recordings.iter().zip(starts(evidence)) {
         let contact = plant.contact.in_recording(measured.inputs.place);
         let time = &measured.inputs.time;
         let count = time.len();
@@ -267,7 +269,6 @@ fn in_contact(evidence: &Evidence, held: &Prediction) -> Vec<f64> {
             let share = shares[first + 2 * count + i];
             all.push(share * (readings[2][i] - expected) / noise);
         }
-        first += CHANNELS.len() * count;
     }
     all
 }

@@ -2,10 +2,8 @@
 //!
 //! A reading is wild only if it stands alone and what it says of the rig is denied by another sensor (`wild`); impacts are seen by more than one.
 
-use crate::plant::CHANNELS;
-use crate::recording::csv::plausible_range;
-
-use super::recorded::{COLUMNS, QUANTITIES};
+use super::subject::{Denial, Subject};
+use crate::quantity::counted;
 use crate::stats::median_step;
 use departure::noise_of;
 pub(in crate::diagnosis) use departure::{departures, lagrange};
@@ -22,9 +20,9 @@ const GAP: f64 = 1.5;
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Cleaning {
     /// Times at which a reading was wild and was set aside, by channel [s].
-    pub outliers: [Vec<f64>; CHANNELS.len()],
+    pub outliers: Vec<Vec<f64>>,
     /// Readings that were never there, by channel, in channels that have others.
-    pub lost: [usize; CHANNELS.len()],
+    pub lost: Vec<usize>,
     /// Gaps: time of the last sample before and the first after each [s].
     pub gaps: Vec<[f64; 2]>,
     /// The usual step from sample to sample [s].
@@ -32,20 +30,23 @@ pub struct Cleaning {
     /// Largest departure of a step from the usual one, gaps apart [s].
     pub jitter: f64,
     /// Standard deviation of each channel's noise, from the recording alone; none where there are too few readings.
-    pub noise: [Option<f64>; CHANNELS.len()],
+    pub noise: Vec<Option<f64>>,
     /// Distance of neighbouring readings of each channel's converter; none where it is finer than the readings tell.
-    pub resolution: [Option<f64>; CHANNELS.len()],
+    pub resolution: Vec<Option<f64>>,
 }
 
-/// Sets outliers aside (they become NaN); `noise` is what the sensors' sheets say, in the order of [`CHANNELS`], `mass` the moving mass [kg].
-pub fn clean(
+/// Sets outliers aside (they become NaN); `noise` is what the sensors' sheets say.
+pub fn clean<S: Subject>(
     time: &[f64],
-    readings: &mut [Vec<f64>; CHANNELS.len()],
-    noise: &[f64; CHANNELS.len()],
-    mass: f64,
+    readings: &mut S::Readings,
+    noise: &S::Noise,
+    model: &S::Model,
 ) -> Cleaning {
+    let readings = readings.as_mut();
     let mut cleaning = Cleaning {
         step: median_step(time),
+        outliers: vec![Vec::new(); readings.len()],
+        lost: vec![0; readings.len()],
         ..Cleaning::default()
     };
     for pair in time.windows(2) {
@@ -61,7 +62,7 @@ pub fn clean(
         if given > 0 {
             cleaning.lost[channel] = values.len() - given;
         }
-        let [low, high] = plausible_range(QUANTITIES[channel]);
+        let [low, high] = S::plausible(S::CHANNELS[channel]);
         for (value, time) in values.iter_mut().zip(time) {
             if !value.is_nan() && !(low..=high).contains(value) {
                 *value = f64::NAN;
@@ -69,10 +70,13 @@ pub fn clean(
             }
         }
     }
-    set_aside(time, readings, noise, mass, &mut cleaning);
+    let denials = S::CHANNELS.iter().map(|channel| S::denial(*channel, model));
+    let denials: Vec<Denial> = denials.collect();
+    set_aside(time, readings, noise.as_ref(), &denials, &mut cleaning);
     for (channel, values) in readings.iter().enumerate() {
-        cleaning.noise[channel] = noise_of(&departures(time, values, cleaning.step));
-        cleaning.resolution[channel] = resolution(values);
+        let noise = noise_of(&departures(time, values, cleaning.step));
+        cleaning.noise.push(noise);
+        cleaning.resolution.push(resolution(values));
         cleaning.outliers[channel].sort_by(f64::total_cmp);
     }
     cleaning
@@ -81,14 +85,14 @@ pub fn clean(
 /// Looks for outliers until there are no more: one may hide behind another.
 fn set_aside(
     time: &[f64],
-    readings: &mut [Vec<f64>; CHANNELS.len()],
-    noise: &[f64; CHANNELS.len()],
-    mass: f64,
+    readings: &mut [Vec<f64>],
+    noise: &[f64],
+    denials: &[Denial],
     cleaning: &mut Cleaning,
 ) {
     const MOST_PASSES: usize = 4;
     for _ in 0..MOST_PASSES {
-        let found = outlier::outlier(time, readings, noise, mass, cleaning.step);
+        let found = outlier::outlier(time, readings, noise, denials, cleaning.step);
         if found.iter().all(Vec::is_empty) {
             return;
         }
@@ -116,13 +120,15 @@ fn resolution(values: &[f64]) -> Option<f64> {
 
 impl Cleaning {
     /// Notes on it for an engineer, a sentence each; nothing of a recording that is as it should be.
-    pub fn account(&self, sheet: &[f64; CHANNELS.len()]) -> Vec<String> {
+    pub fn account<S: Subject>(&self, sheet: &S::Noise) -> Vec<String> {
         /// Jitter below this share of a step is rounding of the stamps [1].
         const ROUNDING: f64 = 0.1;
         /// Noise that differs from the sheet's by this factor is worth a word [1].
         const OTHER_NOISE: f64 = 1.5;
+        let sheet = sheet.as_ref();
+        let columns = || S::CHANNELS.iter().map(|channel| S::column(*channel));
         let mut sentences = Vec::new();
-        for (channel, column) in COLUMNS.into_iter().enumerate() {
+        for (channel, column) in columns().enumerate() {
             let outliers = &self.outliers[channel];
             if !outliers.is_empty() {
                 let times: Vec<String> = outliers.iter().map(|time| format!("{time:.3}")).collect();
@@ -145,7 +151,7 @@ impl Cleaning {
                 }
             }
         }
-        for (channel, column) in COLUMNS.into_iter().enumerate() {
+        for (channel, column) in columns().enumerate() {
             if let Some(step) = self.resolution[channel].filter(|step| *step > sheet[channel]) {
                 let ratio = step / sheet[channel];
                 sentences.push(format!(
@@ -170,10 +176,4 @@ impl Cleaning {
         }
         sentences
     }
-}
-
-/// A number of things: `1 gap`, `2 gaps`.
-fn counted(number: usize, thing: &str) -> String {
-    let plural = if number == 1 { "" } else { "s" };
-    format!("{number} {thing}{plural}")
 }

@@ -1,10 +1,12 @@
 //! The device as the subject of a diagnosis, by itself, in a cell, or a part of it.
 
-use super::subject::Subject;
+use super::recorded::{COLUMNS, QUANTITIES};
+use super::subject::{Denial, Subject};
 use crate::plant::{
     CHANNELS, Channel, Nudging, PlantInputs, PlantParameters, PlantTrajectory, Quantity, readings,
     true_trajectory,
 };
+use crate::recording::csv::plausible_range;
 
 /// Multiple of the load cell's noise from which the tool touches [1].
 const TOUCHES: f64 = 6.0;
@@ -24,6 +26,34 @@ impl Subject for Device {
     type Guide = Nudging;
 
     const CHANNELS: &'static [Channel] = &CHANNELS;
+    const UPSTREAM: Option<Channel> = Some(Channel::RegulatorPressure);
+
+    fn column(channel: Channel) -> &'static str {
+        COLUMNS[channel as usize]
+    }
+
+    fn plausible(channel: Channel) -> [f64; 2] {
+        plausible_range(QUANTITIES[channel as usize])
+    }
+
+    /// ```text
+    /// force e    ->  acceleration e / m                    stroke e  ->  acceleration e / T^2
+    /// acceleration e  ->  speed after less speed before e T, as the stroke has it
+    /// ```
+    ///
+    /// e departure, m moving mass [kg], T step [s]. The regulator's outlet is left by a lag, which no single sample can come out of.
+    fn denial(channel: Channel, model: &PlantParameters) -> Denial {
+        let by = Channel::Acceleration as usize;
+        let of = |per: f64, order: i32| Denial::Derivative { by, per, order };
+        match channel {
+            Channel::RegulatorPressure => Denial::Itself,
+            Channel::Force => of(model.device.moving_mass, 0),
+            Channel::Stroke => of(1.0, 2),
+            Channel::Acceleration => Denial::TwiceIntegrated {
+                by: Channel::Stroke as usize,
+            },
+        }
+    }
 
     fn value(quantity: &Quantity, model: &PlantParameters) -> f64 {
         quantity.get(model)

@@ -226,17 +226,37 @@ impl<S: Subject> Evidence<S> {
     }
 }
 
+/// Place of each recording's first residual; its channels stand one behind another.
+pub fn starts<S: Subject>(evidence: &Evidence<S>) -> impl Iterator<Item = usize> {
+    let counts = evidence.recordings.iter();
+    let counts = counts.map(|measured| S::CHANNELS.len() * S::time(&measured.inputs).len());
+    counts.scan(0, |next, count| {
+        let start = *next;
+        *next += count;
+        Some(start)
+    })
+}
+
+/// Root mean square of residuals in each channel over all recordings, those apart that are not known.
+pub fn rms_by_channel<S: Subject>(evidence: &Evidence<S>, residuals: &[f64]) -> Vec<f64> {
+    let of = |channel: &S::Channel| {
+        let own = by_channel(evidence, residuals).filter(|(_, other, _)| other == channel);
+        let all = own.flat_map(|(_, _, values)| values);
+        let known = all.filter(|value| value.is_finite());
+        let (squares, count) = known.fold((0.0, 0.0), |(sum, n), v| (sum + v * v, n + 1.0));
+        (squares / f64::max(count, 1.0)).sqrt()
+    };
+    S::CHANNELS.iter().map(of).collect()
+}
+
 /// Residuals of each recording and channel.
 pub fn by_channel<'a, S: Subject>(
     evidence: &'a Evidence<S>,
     residuals: &'a [f64],
 ) -> impl Iterator<Item = (usize, S::Channel, &'a [f64])> {
-    let mut start = 0;
-    let recordings = evidence.recordings.iter().enumerate();
-    recordings.flat_map(move |(recording, measured)| {
+    let recordings = evidence.recordings.iter().enumerate().zip(starts(evidence));
+    recordings.flat_map(move |((recording, measured), first)| {
         let count = S::time(&measured.inputs).len();
-        let first = start;
-        start += S::CHANNELS.len() * count;
         S::CHANNELS.iter().enumerate().map(move |(at, channel)| {
             let from = first + at * count;
             (recording, *channel, &residuals[from..from + count])

@@ -1,6 +1,7 @@
 //! Input of a diagnosis: a rig as believed, what is tolerated of it, and recordings of what it did.
 
 use super::clean::{Cleaning, clean};
+use super::device::Device;
 use super::evidence::{Evidence, Measured};
 use super::recorded::{COLUMNS, QUANTITIES, Recorded, RecordedError};
 use crate::diagnosis::data_fault::fault::DataFault;
@@ -136,14 +137,14 @@ pub struct Prepared {
 /// # Errors
 /// A recording that is too short, measures nothing, or is in other units than the rig file.
 pub fn prepare(case: &DiagnosisInput) -> Result<Prepared, RecordedError> {
-    let mass = case.believed.device.moving_mass;
     let mut cleanings = Vec::new();
     let mut notes: Vec<String> = case.data_faults.iter().map(DataFault::words).collect();
     let mut measured = Vec::new();
     for recording in &case.recordings {
         let mut readings = recording.recorded.readings.clone();
         let inputs = recording.recorded.inputs.clone();
-        let mut cleaning = clean(&inputs.time, &mut readings, &case.noise, mass);
+        let mut cleaning =
+            clean::<Device>(&inputs.time, &mut readings, &case.noise, &case.believed);
         for (channel, lost) in CHANNELS.into_iter().zip(&mut cleaning.lost) {
             let mut faults = case.data_faults.iter();
             if faults.any(|fault| fault.sets_aside(channel, &recording.name)) {
@@ -170,7 +171,7 @@ pub fn prepare(case: &DiagnosisInput) -> Result<Prepared, RecordedError> {
                 recording.recorded.filled
             ));
         }
-        let sentences = cleaning.account(&case.noise);
+        let sentences = cleaning.account::<Device>(&case.noise);
         notes.extend(
             sentences
                 .iter()
@@ -227,7 +228,7 @@ mod tests {
     #[test]
     fn the_sheet_is_believed_unless_the_recordings_clearly_differ() {
         let shown = |noise: f64| Cleaning {
-            noise: [Some(noise), None, Some(0.0), Some(1.2)],
+            noise: vec![Some(noise), None, Some(0.0), Some(1.2)],
             ..Cleaning::default()
         };
         let noise = believed_noise(&[shown(3.0), shown(3.2), shown(0.9)], &[1.0; 4]);

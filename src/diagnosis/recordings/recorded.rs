@@ -300,7 +300,7 @@ impl Recorded {
     pub fn check(
         &self,
         file: &str,
-        noise: &[Option<f64>; CHANNELS.len()],
+        noise: &[Option<f64>],
         sheet: &[f64; CHANNELS.len()],
     ) -> Result<(), RecordedError> {
         let file = file.to_owned();

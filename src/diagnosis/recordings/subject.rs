@@ -2,6 +2,29 @@
 
 use std::fmt::Debug;
 
+/// What denies a reading that stands alone, far from its neighbours; other channels by their places.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Denial {
+    /// Nothing: it may be true.
+    None,
+    /// No sensor need be asked: the model cannot do that.
+    Itself,
+    /// A channel that shows nothing like the derivative of an order.
+    Derivative {
+        /// That channel.
+        by: usize,
+        /// What the derivative is divided by [this channel's unit over its and seconds to the order].
+        per: f64,
+        /// Order of the derivative.
+        order: i32,
+    },
+    /// A channel of which it is the second derivative, and whose rate does not change as it says.
+    TwiceIntegrated {
+        /// That channel.
+        by: usize,
+    },
+}
+
 /// A kind of thing that is diagnosed.
 pub trait Subject: Copy + Debug + Send + Sync + 'static {
     /// Its description in numbers.
@@ -23,6 +46,18 @@ pub trait Subject: Copy + Debug + Send + Sync + 'static {
 
     /// All channels, in their order.
     const CHANNELS: &'static [Self::Channel];
+
+    /// The channel that depends on the fewest parts of the model, if there is one: what it shows can be explained before all else is known.
+    const UPSTREAM: Option<Self::Channel>;
+
+    /// Name of a channel's column in a file.
+    fn column(channel: Self::Channel) -> &'static str;
+
+    /// Least and largest reading that a sensor of a channel can give.
+    fn plausible(channel: Self::Channel) -> [f64; 2];
+
+    /// What can deny a reading of a channel.
+    fn denial(channel: Self::Channel, model: &Self::Model) -> Denial;
 
     /// Value of a quantity.
     fn value(quantity: &Self::Quantity, model: &Self::Model) -> f64;
@@ -64,7 +99,8 @@ mod tests {
     use crate::diagnosis::fit::free::{Free, Prior};
     use crate::diagnosis::fit::model_error::ModelError;
     use crate::diagnosis::fit::{FULL, Limit, fit};
-    use crate::diagnosis::recordings::evidence::{Evidence, Measured, by_channel};
+    use crate::diagnosis::recordings::clean::clean;
+    use crate::diagnosis::recordings::evidence::{Evidence, Measured, by_channel, rms_by_channel};
     use crate::effects::Coordinate;
     use rand::{Rng, SeedableRng};
     use rand_distr::StandardNormal;
@@ -92,6 +128,26 @@ mod tests {
         type Guide = ();
 
         const CHANNELS: &'static [Seen] = &[Seen::Level, Seen::Inflow];
+        const UPSTREAM: Option<Seen> = None;
+
+        fn column(channel: Seen) -> &'static str {
+            match channel {
+                Seen::Level => "level_m",
+                Seen::Inflow => "inflow_m_per_s",
+            }
+        }
+
+        fn plausible(channel: Seen) -> [f64; 2] {
+            [-1.0, if channel == Seen::Level { 2.0 } else { 40.0 }]
+        }
+
+        fn denial(channel: Seen, _: &[f64; 2]) -> Denial {
+            let (by, per, order) = (1, 1.0, 1);
+            match channel {
+                Seen::Level => Denial::Derivative { by, per, order },
+                Seen::Inflow => Denial::None,
+            }
+        }
 
         fn value(quantity: &usize, model: &[f64; 2]) -> f64 {
             model[*quantity]
@@ -199,6 +255,54 @@ mod tests {
             let counted = residuals.iter().filter(|r| r.is_finite());
             let square = counted.map(|r| r * r).sum::<f64>() / 295.0;
             assert!((0.7..1.4).contains(&square), "{square}");
+        }
+    }
+
+    /// A level that leaps is denied by the inflow, unless that leaps too; of the inflow nothing is known but its range.
+    #[test]
+    fn its_recordings_are_cleaned_by_the_same_code() {
+        let Measured {
+            inputs,
+            mut readings,
+            ..
+        } = fills(0).recordings.swap_remove(0);
+        readings[0][100] += 0.3;
+        readings[0][200] += 0.3;
+        readings[1][200] += 30.0;
+        readings[1][250] += 1.0;
+        readings[1][280] = 50.0;
+        let cleaning = clean::<Tank>(&inputs.0, &mut readings, &NOISE, &TRUTH);
+        assert_eq!(cleaning.outliers, [[inputs.0[100]], [inputs.0[280]]]);
+        let wild = |channel: usize| readings[channel].iter().filter(|r| r.is_nan()).count();
+        assert_eq!([wild(0), wild(1)], [1, 1]);
+        assert_eq!(cleaning.noise.len(), 2);
+        for (found, planted) in cleaning.noise.iter().zip(NOISE) {
+            assert!((found.unwrap() / planted - 1.0).abs() < 0.2);
+        }
+        let account = cleaning.account::<Tank>(&NOISE).join("; ");
+        assert!(account.contains("1 outlier of level_m"), "{account}");
+    }
+
+    #[test]
+    fn its_channels_are_told_apart_by_how_far_they_are_moved() {
+        let evidence = fills(0);
+        let [truth, moved] = [TRUTH, [0.4, 1.9]].map(|model| evidence.predict(&model, false, None));
+        let pairs = moved.residuals.iter().zip(&truth.residuals);
+        let change: Vec<f64> = pairs.map(|(moved, truth)| moved - truth).collect();
+        let sizes = rms_by_channel(&evidence, &change);
+        let by_hand = |channel: usize| {
+            let mut squares = 0.0;
+            for own in &evidence.recordings {
+                let [a, b] =
+                    [TRUTH, [0.4, 1.9]].map(|m| Tank::simulate(&m, &own.inputs, false, None, None));
+                let pairs = a[channel].iter().zip(&b[channel]);
+                squares += pairs.map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+            }
+            (squares / 900.0).sqrt() / NOISE[channel]
+        };
+        assert_eq!(sizes.len(), 2);
+        for (channel, size) in sizes.iter().enumerate() {
+            assert!((size / by_hand(channel) - 1.0).abs() < 1e-9, "{sizes:?}");
         }
     }
 

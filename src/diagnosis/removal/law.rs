@@ -1,5 +1,7 @@
 //! A row of the table, and the law that predicts it.
 
+use crate::listed::listed;
+
 /// A run: its settings and what it took off. NaN where it is not known, or the table has no such column.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TableRow {
@@ -39,55 +41,32 @@ pub struct Reference {
     pub area: f64,
 }
 
-/// A number of the law in which it may deviate from what is believed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Deviation {
-    /// Volume at the reference settings, where the believed law states it.
-    Coefficient,
-    /// Exponent of the force.
-    Force,
-    /// Force below which nothing comes off.
-    Threshold,
-    /// Speed lost per force.
-    Sag,
-    /// Loss per wear.
-    Wear,
-    /// Exponent of the speed.
-    Speed,
-    /// Exponent of the time.
-    Time,
-    /// Exponent of the area.
-    Area,
+listed! {
+    /// A number of the law in which it may deviate from what is believed.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+    pub enum Deviation: 8,
+    /// Name in diagnosis.json.
+    name: &'static str {
+        /// Volume at the reference settings, where the believed law states it.
+        Coefficient = "removal_coefficient",
+        /// Exponent of the force.
+        Force = "removal_force_exponent",
+        /// Force below which nothing comes off.
+        Threshold = "removal_threshold_force",
+        /// Speed lost per force.
+        Sag = "tool_speed_sag",
+        /// Loss per wear.
+        Wear = "tool_wear",
+        /// Exponent of the speed.
+        Speed = "removal_speed_exponent",
+        /// Exponent of the time.
+        Time = "removal_time_exponent",
+        /// Exponent of the area.
+        Area = "removal_area_exponent",
+    }
 }
 
 impl Deviation {
-    /// All.
-    pub const ALL: [Self; 8] = [
-        Self::Coefficient,
-        Self::Force,
-        Self::Threshold,
-        Self::Sag,
-        Self::Wear,
-        Self::Speed,
-        Self::Time,
-        Self::Area,
-    ];
-
-    /// Name in diagnosis.json.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Coefficient => "removal_coefficient",
-            Self::Force => "removal_force_exponent",
-            Self::Threshold => "removal_threshold_force",
-            Self::Sag => "tool_speed_sag",
-            Self::Wear => "tool_wear",
-            Self::Speed => "removal_speed_exponent",
-            Self::Time => "removal_time_exponent",
-            Self::Area => "removal_area_exponent",
-        }
-    }
-
     /// Name of its number, in the improved file too.
     #[must_use]
     pub fn key(self) -> &'static str {

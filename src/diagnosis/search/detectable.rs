@@ -13,9 +13,8 @@ use super::influence::BELOW_NOISE;
 use crate::diagnosis::fit::free::{Free, free_of};
 use crate::diagnosis::fit::hypothesis::Hypothesis;
 use crate::diagnosis::fit::with_values;
-use crate::diagnosis::recordings::evidence::{Prediction, by_channel};
+use crate::diagnosis::recordings::evidence::{Prediction, by_channel, rms_by_channel};
 use crate::effects::Effect;
-use crate::plant::CHANNELS;
 use nalgebra::DVector;
 use rayon::prelude::*;
 
@@ -139,15 +138,8 @@ impl<'a> Change<'a> {
         let numbers = self.free.len() as f64;
         let penalty = numbers * (self.search.evidence.count() as f64).ln()
             + self.search.settings.look_elsewhere;
-        let largest = CHANNELS.into_iter().map(|channel| {
-            let own = by_channel(self.search.evidence, change).filter(|(_, c, _)| *c == channel);
-            let all = own
-                .flat_map(|(_, _, values)| values)
-                .filter(|v| v.is_finite());
-            let (squares, count) = all.fold((0.0, 0.0), |(sum, n), v| (sum + v * v, n + 1.0));
-            (squares / f64::max(count, 1.0)).sqrt()
-        });
-        let moved = largest.fold(0.0, f64::max) / BELOW_NOISE;
+        let sizes = rms_by_channel(self.search.evidence, change);
+        let moved = sizes.into_iter().fold(0.0, f64::max) / BELOW_NOISE;
         moved.min(gain.sqrt() / (penalty.sqrt() + NINE_IN_TEN))
     }
 

@@ -8,8 +8,8 @@ use super::progress::{Observer, Step};
 use super::scale::Scale;
 use crate::diagnosis::fit::free::Free;
 use crate::diagnosis::fit::hypothesis::Hypothesis;
-use crate::diagnosis::recordings::evidence::by_channel;
-use crate::plant::{CHANNELS, DeviceParts, PlantParameters};
+use crate::diagnosis::recordings::evidence::rms_by_channel;
+use crate::plant::{DeviceParts, PlantParameters};
 
 /// Influence of an effect on the channel that it moves most below which it is not named, in standard deviations of that channel's noise [1].
 pub(in crate::diagnosis) const BELOW_NOISE: f64 = 0.5;
@@ -116,15 +116,7 @@ impl Search<'_> {
             .zip(shares.iter())
             .map(|((with, without), share)| (with - without) * share)
             .collect();
-        let mut sums = [[0.0; 2]; CHANNELS.len()];
-        for (_, channel, moved) in by_channel(self.evidence, &moved) {
-            let [squares, count] = &mut sums[channel as usize];
-            for change in moved.iter().filter(|change| change.is_finite()) {
-                *squares += change * change;
-                *count += 1.0;
-            }
-        }
-        let sizes = sums.map(|[squares, count]| (squares / f64::max(count, 1.0)).sqrt());
+        let sizes = rms_by_channel(self.evidence, &moved);
         sizes.into_iter().fold(0.0, f64::max)
     }
 }

@@ -12,9 +12,10 @@ use crate::diagnosis::difference::localise::{NOISE_ALONE, robust_rms};
 use crate::diagnosis::fit::covariance::covariance;
 use crate::diagnosis::fit::free::{Free, Prior};
 use crate::diagnosis::fit::hypothesis::Hypothesis;
+use crate::diagnosis::recordings::device::Device;
 use crate::diagnosis::recordings::evidence::by_channel;
+use crate::diagnosis::recordings::subject::Subject;
 use crate::effects::Subsystem;
-use crate::plant::Channel;
 
 /// Residual by the step of a coordinate below which a channel does not depend on it, in standard deviations of its noise [1].
 const NOTHING: f64 = 1e-6;
@@ -60,7 +61,7 @@ impl Search<'_> {
     fn regulator_alone(&self, hypothesis: &Hypothesis) -> Option<Vec<Free>> {
         let fitted = &hypothesis.fit;
         let upstream = self.upstream(hypothesis)?;
-        let own = self.evidence.of_channel(Channel::RegulatorPressure);
+        let own = self.evidence.of_channel(Device::UPSTREAM?);
         let free: Vec<Free> = (upstream.iter())
             .map(|i| fitted.free[*i].from(fitted.values[*i]))
             .collect();
@@ -110,7 +111,7 @@ impl Search<'_> {
             return false;
         };
         by_channel(self.evidence, column)
-            .filter(|(_, channel, _)| *channel == Channel::RegulatorPressure)
+            .filter(|(_, channel, _)| Some(*channel) == Device::UPSTREAM)
             .any(|(_, _, slopes)| slopes.iter().any(|slope| slope.abs() > NOTHING))
     }
 }

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use super::super::unit::Unit;
 use super::super::{RecordingError, schema};
 use super::columns::{COLUMNS, Column, TIME};
 use super::{check_plausible, check_step, table};
+use crate::unit::SiUnit as Unit;
 
 /// A recording of a cell; NaN where there is no value.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,7 @@
 //! The columns of a real rig's recording.
 
 use super::super::schema::{self, JointSignal};
-use super::super::unit::{Unit, column_name};
+use crate::unit::{SiUnit as Unit, column_name};
 
 /// Column of the sample times.
 pub(super) const TIME: &str = "time_s";

@@ -9,8 +9,8 @@ use serde::Deserialize;
 use serde::de::{Deserializer, MapAccess, Visitor};
 
 use crate::keys::declaration::{Below, Filled, Key, Name, Plain, Table, table_schema};
-use crate::keys::units::Unit;
 use crate::plant::registry;
+use crate::unit::Unit;
 
 /// The one key that is no number.
 const GAS_PROCESS: &str = "gas_process";

@@ -1,8 +1,8 @@
 //! The numbers of a rig file: where each stands in the rig's description, and the range in which it is plausible as SI.
 
 use crate::keys::check::plain;
-use crate::keys::units::Unit;
 use crate::plant::{DeviceParts, Number, registry};
+use crate::unit::Unit;
 
 /// The numbers of the rig, in the order of the format; each stands under its dotted name.
 pub(super) static NUMBERS: [&Number; 21] = [

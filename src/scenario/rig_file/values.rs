@@ -10,8 +10,8 @@ use crate::keys::declaration::Table;
 use crate::keys::document::Document;
 use crate::keys::error::ScenarioError;
 use crate::keys::suggestion::{advice, join};
-use crate::keys::units::Unit;
 use crate::plant::{DeviceParts, PlantParameters, Quantity, registry};
+use crate::unit::Unit;
 
 /// A number of the rig that is not exactly known.
 #[derive(Debug, Clone, Copy)]

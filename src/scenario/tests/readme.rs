@@ -11,7 +11,7 @@ use super::super::recorded_cell::RecordedCellFile;
 use super::{MINIMAL, MINIMAL_BENCH, read_any, scenarios};
 use crate::keys::declaration::{Key, tables};
 use crate::keys::suggestion::join;
-use crate::keys::units::Unit;
+use crate::unit::Unit;
 
 /// Which of the two formats.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

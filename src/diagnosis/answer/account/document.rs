@@ -1,5 +1,6 @@
 //! An account as a document: its parts and their kinds.
 
+use crate::listed::listed;
 use serde::{Deserialize, Serialize};
 
 use super::super::words::wrapped;
@@ -13,84 +14,57 @@ pub struct Account {
     pub sections: Vec<AccountSection>,
 }
 
-/// Subject of a part of an account.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum SectionKind {
-    /// Where recordings and model differ.
-    Mismatch,
-    /// The link of the chain that does not explain its own recording.
-    Link,
-    /// The effects that were found.
-    Missing,
-    /// Errors that remain.
-    Remaining,
-    /// A law that a user tried.
-    Tried,
-    /// Explanations that were ruled out.
-    RuledOut,
-    /// Explanations that the recordings do not tell apart.
-    Ambiguous,
-    /// The experiment to make next.
-    NextExperiment,
-    /// Numbers of the rig file, moved within their tolerances.
-    OwnNumbers,
-    /// Remarks on the recordings.
-    Recordings,
-    /// Impact of a contact flange.
-    Impact,
-    /// Its ringing.
-    Ringing,
-    /// Its settling.
-    Settling,
-    /// Its steady force error.
-    SteadyError,
-    /// Its force error while the arm moves.
-    ErrorWhileMoving,
-    /// The same simulated.
-    Simulated,
-    /// Prediction of a run of it that was not fitted to.
-    UnseenRun,
-    /// Its runs.
-    Runs,
-    /// Joints and servos of a cell.
-    Arm,
-    /// Places on a cell's path.
-    PathPlaces,
-    /// What the improved file has no place for.
-    NotWritten,
-    /// Commands for the improved file.
-    HowToRun,
-}
-
-impl SectionKind {
+listed! {
+    /// Subject of a part of an account.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    #[serde(rename_all = "snake_case")]
+    pub enum SectionKind,
     /// Its title.
-    #[must_use]
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Mismatch => "Where it differs",
-            Self::Link => "Which link",
-            Self::Missing => "What is missing",
-            Self::Remaining => "What is left",
-            Self::Tried => "The law tried",
-            Self::RuledOut => "What was ruled out",
-            Self::Ambiguous => "What the recordings do not tell apart",
-            Self::NextExperiment => "What to record next",
-            Self::OwnNumbers => "The rig file's own numbers",
-            Self::Recordings => "The recordings",
-            Self::Impact => "Impact",
-            Self::Ringing => "Ringing",
-            Self::Settling => "Settling",
-            Self::SteadyError => "Steady error",
-            Self::ErrorWhileMoving => "While the arm moves",
-            Self::Simulated => "As a simulation",
-            Self::UnseenRun => "A run that it never saw",
-            Self::Runs => "The runs",
-            Self::Arm => "The arm",
-            Self::PathPlaces => "Where on the path",
-            Self::NotWritten => "What improved.toml leaves out",
-            Self::HowToRun => "How to run what was found",
-        }
+    title: &'static str {
+        /// Where recordings and model differ.
+        Mismatch = "Where it differs",
+        /// The link of the chain that does not explain its own recording.
+        Link = "Which link",
+        /// The effects that were found.
+        Missing = "What is missing",
+        /// Errors that remain.
+        Remaining = "What is left",
+        /// A law that a user tried.
+        Tried = "The law tried",
+        /// Explanations that were ruled out.
+        RuledOut = "What was ruled out",
+        /// Explanations that the recordings do not tell apart.
+        Ambiguous = "What the recordings do not tell apart",
+        /// The experiment to make next.
+        NextExperiment = "What to record next",
+        /// Numbers of the rig file, moved within their tolerances.
+        OwnNumbers = "The rig file's own numbers",
+        /// Remarks on the recordings.
+        Recordings = "The recordings",
+        /// Impact of a contact flange.
+        Impact = "Impact",
+        /// Its ringing.
+        Ringing = "Ringing",
+        /// Its settling.
+        Settling = "Settling",
+        /// Its steady force error.
+        SteadyError = "Steady error",
+        /// Its force error while the arm moves.
+        ErrorWhileMoving = "While the arm moves",
+        /// The same simulated.
+        Simulated = "As a simulation",
+        /// Prediction of a run of it that was not fitted to.
+        UnseenRun = "A run that it never saw",
+        /// Its runs.
+        Runs = "The runs",
+        /// Joints and servos of a cell.
+        Arm = "The arm",
+        /// Places on a cell's path.
+        PathPlaces = "Where on the path",
+        /// What the improved file has no place for.
+        NotWritten = "What improved.toml leaves out",
+        /// Commands for the improved file.
+        HowToRun = "How to run what was found",
     }
 }
 

@@ -8,10 +8,10 @@
 //! a_m acceleration and F_m force as measured, M mass, W weight, P force of chambers, seals and stops. Medians over narrow ranges of the variable: dots
 //! beside the curve that was fitted.
 
-use crate::diagnosis::difference::links::lacking;
+use crate::diagnosis::difference::links::{ON_THE_PISTON, lacking};
 use crate::diagnosis::fit::hypothesis::Hypothesis;
-use crate::diagnosis::recordings::evidence::{Evidence, Prediction};
-use crate::plant::{Basis, CHANNELS, Latent, Port};
+use crate::diagnosis::recordings::evidence::{Evidence, Prediction, starts};
+use crate::plant::{Basis, Latent, Port};
 use crate::stats::{NORMAL_MAD, quantiles};
 
 /// Ranges of the variable.
@@ -110,14 +110,11 @@ fn samples(
     channel: Option<usize>,
 ) -> Vec<(f64, f64)> {
     let shares = evidence.shares(FORGIVEN, false);
-    // A force is seen by load cell and accelerometer.
-    let seen = channel.map_or(&[2, 3][..], |_| &[]);
-    let mut first = 0;
+    let seen = channel.map_or(&ON_THE_PISTON[..], |_| &[]);
     let mut all = Vec::new();
-    for (measured, trajectory) in evidence.recordings.iter().zip(&without.trajectories) {
+    let recordings = evidence.recordings.iter().zip(&without.trajectories);
+    for ((measured, trajectory), start) in recordings.zip(starts(evidence)) {
         let count = measured.inputs.time.len();
-        let start = first;
-        first += CHANNELS.len() * count;
         for i in 0..count {
             let counts = |channel: &usize| shares[start + channel * count + i] > COUNTS;
             if !seen.iter().chain(&channel).all(counts) {

@@ -1,5 +1,6 @@
 //! Kind of a term's curve, in words that physics is known by.
 
+use crate::listed::listed;
 use crate::plant::{Basis, Latent};
 use crate::stats::median;
 
@@ -12,35 +13,24 @@ const NARROW: f64 = 0.4;
 /// Share of a curve's energy that makes it odd or even, or of its ways up and down that makes it monotonic [1].
 const MOSTLY: f64 = 0.85;
 
-/// A kind of curve.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Form {
-    /// Comes back after a period.
-    Periodic,
-    /// Acts in a small part of what the variable moves through.
-    Localised,
-    /// Turns its sign with the variable's.
-    Odd,
-    /// Does not care about the variable's sign.
-    Even,
-    /// Rises all along, or falls.
-    Monotonic,
-    /// Anything else.
-    Broad,
-}
-
-impl Form {
+listed! {
+    /// A kind of curve.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+    pub enum Form,
     /// Name in an answer.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Periodic => "periodic",
-            Self::Localised => "localised",
-            Self::Odd => "odd",
-            Self::Even => "even",
-            Self::Monotonic => "monotonic",
-            Self::Broad => "broad",
-        }
+    name: &'static str {
+        /// Comes back after a period.
+        Periodic = "periodic",
+        /// Acts in a small part of what the variable moves through.
+        Localised = "localised",
+        /// Turns its sign with the variable's.
+        Odd = "odd",
+        /// Does not care about the variable's sign.
+        Even = "even",
+        /// Rises all along, or falls.
+        Monotonic = "monotonic",
+        /// Anything else.
+        Broad = "broad",
     }
 }
 

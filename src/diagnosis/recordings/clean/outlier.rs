@@ -1,15 +1,9 @@
 //! Wild readings: they stand alone, far from both neighbours, and another sensor denies what they say of the rig.
 //!
-//! ```text
-//! force e    ->  acceleration e / m                    stroke e  ->  acceleration e / T^2
-//! acceleration e  ->  speed after less speed before e T, as the stroke has it
-//! ```
-//!
-//! e departure, m moving mass [kg], T step [s]. An impact of one sample passes, for what it says is true; so does what no other sensor can deny.
-//! The regulator's outlet is left by a lag, which no single sample can come out of.
+//! An impact of one sample passes, for what it says is true; so does what no other sensor can deny. Which sensor can is the subject's to say ([`Denial`]).
 
 use super::departure::{departure, departures};
-use crate::plant::CHANNELS;
+use crate::diagnosis::recordings::subject::Denial;
 use crate::stats::{NORMAL_MAD, median};
 
 /// Departure from which a reading may be wild, in standard deviations of noise and of what happens around it [1].
@@ -27,45 +21,39 @@ const SPEED_POWER: f64 = 25.0;
 /// Departure of that change from none that is noise [1].
 const SPEED_NOISE: f64 = 4.0;
 
-/// Channels in the order of [`CHANNELS`].
-const PRESSURE: usize = 0;
-const STROKE: usize = 1;
-const FORCE: usize = 2;
-const ACCELERATION: usize = 3;
-
 /// The examined readings.
 struct Sight<'a> {
     time: &'a [f64],
-    readings: &'a [Vec<f64>; CHANNELS.len()],
-    noise: &'a [f64; CHANNELS.len()],
-    departures: [Vec<f64>; CHANNELS.len()],
+    readings: &'a [Vec<f64>],
+    noise: &'a [f64],
+    denials: &'a [Denial],
+    departures: Vec<Vec<f64>>,
     step: f64,
-    mass: f64,
 }
 
 /// Wild readings by channel.
 pub(super) fn outlier(
     time: &[f64],
-    readings: &[Vec<f64>; CHANNELS.len()],
-    noise: &[f64; CHANNELS.len()],
-    mass: f64,
+    readings: &[Vec<f64>],
+    noise: &[f64],
+    denials: &[Denial],
     step: f64,
-) -> [Vec<usize>; CHANNELS.len()] {
-    let departures: [Vec<f64>; CHANNELS.len()] =
-        std::array::from_fn(|channel| departures(time, &readings[channel], step));
+) -> Vec<Vec<usize>> {
+    let departures = readings.iter().map(|own| departures(time, own, step));
     let sight = Sight {
         time,
         readings,
         noise,
-        departures,
+        denials,
+        departures: departures.collect(),
         step,
-        mass,
     };
-    std::array::from_fn(|channel| {
+    let of = |channel: usize| {
         (0..time.len())
             .filter(|index| sight.stands_alone(channel, *index) && sight.denied(channel, *index))
             .collect()
-    })
+    };
+    (0..readings.len()).map(of).collect()
 }
 
 impl Sight<'_> {
@@ -96,36 +84,36 @@ impl Sight<'_> {
     /// Whether another sensor denies a reading.
     fn denied(&self, channel: usize, index: usize) -> bool {
         let said = self.departures[channel][index].abs();
-        match channel {
-            PRESSURE => true,
-            FORCE => self.acceleration_denies(index, said / self.mass),
-            STROKE => self.acceleration_denies(index, said / (self.step * self.step)),
-            _ => self.stroke_denies(index),
+        match self.denials[channel] {
+            Denial::None => false,
+            Denial::Itself => true,
+            Denial::Derivative { by, per, order } => {
+                self.derivative_denies(by, index, said / per / self.step.powi(order))
+            }
+            Denial::TwiceIntegrated { by } => self.integral_denies(channel, by, index),
         }
     }
 
-    /// Whether the accelerometer shows nothing like an acceleration [m/s2].
-    fn acceleration_denies(&self, index: usize, said: f64) -> bool {
-        let departures = &self.departures[ACCELERATION];
+    /// Whether a channel shows nothing like what is said of it.
+    fn derivative_denies(&self, by: usize, index: usize, said: f64) -> bool {
+        let departures = &self.departures[by];
         let near = index.saturating_sub(1)..(index + 2).min(departures.len());
         let shown = departures[near]
             .iter()
             .fold(0.0f64, |most, z| most.max(z.abs()));
-        departures[index].is_finite()
-            && said > POWER * self.noise[ACCELERATION]
-            && shown < SHOWN * said
+        departures[index].is_finite() && said > POWER * self.noise[by] && shown < SHOWN * said
     }
 
-    /// Whether the stroke shows no change of speed at a reading of the accelerometer beyond what the others say.
-    fn stroke_denies(&self, index: usize) -> bool {
+    /// Whether a position shows no change of speed at a reading of an acceleration beyond what the others say.
+    fn integral_denies(&self, channel: usize, by: usize, index: usize) -> bool {
         const SIDE: usize = 4;
         if index < SIDE || index + SIDE >= self.time.len() {
             return false;
         }
         let span = index - SIDE..=index + SIDE;
         let time = &self.time[span.clone()];
-        let stroke = &self.readings[STROKE][span.clone()];
-        let mut acceleration = self.readings[ACCELERATION][span].to_vec();
+        let stroke = &self.readings[by][span.clone()];
+        let mut acceleration = self.readings[channel][span].to_vec();
         let whole = stroke
             .iter()
             .chain(&acceleration)
@@ -140,7 +128,7 @@ impl Sight<'_> {
         let rest: Vec<f64> = stroke.iter().zip(trajectory).map(|(x, c)| x - c).collect();
         let (before, its_variance) = slope(&time[..SIDE], &rest[..SIDE]);
         let (after, other_variance) = slope(&time[SIDE + 1..], &rest[SIDE + 1..]);
-        let deviation = self.noise[STROKE] * (its_variance + other_variance).sqrt();
+        let deviation = self.noise[by] * (its_variance + other_variance).sqrt();
         said.abs() > SPEED_POWER * deviation && (after - before).abs() < SPEED_NOISE * deviation
     }
 }

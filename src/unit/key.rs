@@ -1,125 +1,26 @@
-//! Units of the numbers in a file: a key's suffix says its unit, and only here are units turned into SI.
+//! Units of the numbers in a file: a key's suffix says its unit.
 
-use std::f64::consts::PI;
 use std::ops::RangeInclusive;
 
-/// A unit that a key can carry.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Unit {
-    /// End of the keys that carry it.
-    suffix: &'static str,
-    /// Symbol for people.
-    pub symbol: &'static str,
-    conversion: Conversion,
-}
-
-/// Way to SI. A division by a whole number gives the double nearest to the decimal that was written,
-/// so that 32 mm is the same number as a literal 0.032; a product with its inverse would not.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Conversion {
-    Divide(f64),
-    Multiply(f64),
-}
-
-use Conversion::{Divide, Multiply};
-
-/// Longer suffixes before those that they end with.
-const UNITS: [Unit; 51] = [
-    unit("_mm3_per_s", "mm3/s", Divide(1e9)),
-    unit("_mm3_per_j", "mm3/J", Divide(1e9)),
-    unit("_j_per_mm3", "J/mm3", Multiply(1e9)),
-    unit("_mm3", "mm3", Divide(1e9)),
-    unit("_n_mm", "N mm", Divide(1e3)),
-    unit("_rpm", "1/min", Multiply(PI / 30.0)),
-    unit("_kj", "kJ", Multiply(1e3)),
-    unit("_mv_per_v", "mV/V", Divide(1e3)),
-    unit("_pa_s_per_kg", "Pa s/kg", Divide(1.0)),
-    unit("_n_m_per_rad", "N m/rad", Divide(1.0)),
-    unit("_rad_per_s", "rad/s", Divide(1.0)),
-    unit("_pa_per_s", "Pa/s", Divide(1.0)),
-    unit("_kg_per_s", "kg/s", Divide(1.0)),
-    unit("_n_per_pa", "N/Pa", Divide(1.0)),
-    unit("_n_s_per_m", "N s/m", Divide(1.0)),
-    unit("_n_per_m", "N/m", Divide(1.0)),
-    unit("_n_per_m15", "N/m^1.5", Divide(1.0)),
-    unit("_n_per_s", "N/s", Divide(1.0)),
-    unit("_n_m", "N m", Divide(1.0)),
-    unit("_mm_per_s3", "mm/s3", Divide(1e3)),
-    unit("_mm_per_s2", "mm/s2", Divide(1e3)),
-    unit("_mm_per_s", "mm/s", Divide(1e3)),
-    unit("_m_per_s2", "m/s2", Divide(1.0)),
-    unit("_m_per_s", "m/s", Divide(1.0)),
-    unit("_deg_per_s", "deg/s", Multiply(PI / 180.0)),
-    unit("_per_s", "1/s", Divide(1.0)),
-    unit("_j_per_kg_k", "J/(kg K)", Divide(1.0)),
-    unit("_bar_gauge", "bar gauge", Multiply(1e5)),
-    unit("_pa_absolute", "Pa absolute", Divide(1.0)),
-    unit("_cm3", "cm3", Divide(1e6)),
-    unit("_mm2", "mm2", Divide(1e6)),
-    unit("_m3", "m3", Divide(1.0)),
-    unit("_m2", "m2", Divide(1.0)),
-    unit("_w_per_k", "W/K", Divide(1.0)),
-    unit("_ohm", "ohm", Divide(1.0)),
-    unit("_um", "um", Divide(1e6)),
-    unit("_uf", "uF", Divide(1e6)),
-    unit("_pa", "Pa", Divide(1.0)),
-    unit("_mm", "mm", Divide(1e3)),
-    unit("_rad", "rad", Divide(1.0)),
-    unit("_deg", "deg", Multiply(PI / 180.0)),
-    unit("_hz", "Hz", Divide(1.0)),
-    unit("_kg", "kg", Divide(1.0)),
-    unit("_ms", "ms", Divide(1e3)),
-    unit("_n", "N", Divide(1.0)),
-    unit("_m", "m", Divide(1.0)),
-    unit("_s", "s", Divide(1.0)),
-    unit("_k", "K", Divide(1.0)),
-    unit("_v", "V", Divide(1.0)),
-    unit("_w", "W", Divide(1.0)),
-    // A pure number: every key ends with nothing.
-    unit("", "", Divide(1.0)),
-];
-
-const fn unit(suffix: &'static str, symbol: &'static str, conversion: Conversion) -> Unit {
-    Unit {
-        suffix,
-        symbol,
-        conversion,
-    }
-}
+use super::Conversion::{Divide, Multiply};
+use super::{UNITS, Unit};
 
 impl Unit {
-    /// Unit that a key carries; the pure number if it carries none.
+    /// Unit that a key carries, by the longest suffix that it ends with; the pure number if it carries none.
     pub fn of_key(key: &str) -> Self {
-        *UNITS
+        let stem = |unit: &Self| key.strip_suffix(unit.suffix)?.strip_suffix('_');
+        let carried = UNITS
             .iter()
-            .find(|unit| key.ends_with(unit.suffix))
-            .expect("the last suffix is empty, which ends every key")
+            .filter(|unit| unit.of_keys && stem(unit).is_some());
+        let longest = carried.max_by_key(|unit| unit.suffix.len());
+        let one = || UNITS.iter().find(|unit| unit.of_keys && unit.is_one());
+        *longest.or_else(one).expect("the table has the pure number")
     }
 
     /// A value under a key as it is under the key of another unit of the same quantity, in SI; none if they differ in more than the unit.
     pub fn convert(from: &str, value: f64, to: &str) -> Option<f64> {
         let (own, other) = (Self::of_key(from), Self::of_key(to));
-        let stem = |key: &str, unit: Self| key[..key.len() - unit.suffix.len()].to_owned();
-        let alike = stem(from, own) == stem(to, other) && own.basic() == other.basic();
-        alike.then(|| own.to_si(value))
-    }
-
-    /// Its symbol in basic units.
-    fn basic(self) -> String {
-        let parts = [
-            ("mm", "m"),
-            ("um", "m"),
-            ("cm", "m"),
-            ("ms", "s"),
-            ("deg", "rad"),
-        ];
-        let symbol = self
-            .symbol
-            .replace("bar gauge", "Pa")
-            .replace(" absolute", "");
-        parts
-            .iter()
-            .fold(symbol, |symbol, (from, to)| symbol.replace(from, to))
+        (stem(from) == stem(to) && own.si == other.si).then(|| own.to_si(value))
     }
 
     /// Whether it is the pure number.
@@ -197,11 +98,14 @@ pub(crate) fn look_alike(symbol: &str, value: f64, range: [f64; 2]) -> Option<&'
 
 /// A key without its unit: `feed` for `feed_mm_per_s`.
 pub(crate) fn stem(key: &str) -> &str {
-    &key[..key.len() - Unit::of_key(key).suffix.len()]
+    let stem = key.strip_suffix(Unit::of_key(key).suffix);
+    stem.map_or(key, |stem| stem.strip_suffix('_').unwrap_or(stem))
 }
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::PI;
+
     use super::*;
 
     #[test]
