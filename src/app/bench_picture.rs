@@ -4,11 +4,10 @@ use glam::{DQuat, DVec3};
 use glamx::DPose3;
 
 use super::picture::{PART, device_bodies};
+use crate::arm::VisualShape;
 use crate::recording::{Recording, RecordingError, schema};
 use crate::scenario::BenchScenario;
-use crate::scene::{
-    ContactArrow, EdgePath, Scene, SceneBody, SceneGeometry, SceneLimits, ScenePoses, SceneShape,
-};
+use crate::scene::{ContactArrow, EdgePath, Scene, SceneBody, SceneLimits, ScenePoses, SceneShape};
 
 /// Time between two frames of the picture [s].
 const FRAME_INTERVAL: f64 = 0.02;
@@ -54,7 +53,7 @@ pub(super) fn scene_of(
             entity: "load".into(),
             shapes: vec![SceneShape {
                 body_from_shape: DPose3::IDENTITY,
-                geometry: SceneGeometry::Box { size: LOAD },
+                geometry: VisualShape::Box { size: LOAD },
                 colour: PART,
             }],
             world_from_body: ScenePoses::Moving(frames.iter().map(place).collect()),

@@ -14,8 +14,7 @@ use crate::recording::{Recording, RecordingError, schema};
 use crate::scene::colour::Colour;
 use crate::scene::finished_edge::FinishedEdge;
 use crate::scene::{
-    CollisionShape, ContactArrow, EdgePath, Scene, SceneBody, SceneGeometry, SceneLimits,
-    ScenePoses, SceneShape,
+    CollisionShape, ContactArrow, EdgePath, Scene, SceneBody, SceneLimits, ScenePoses, SceneShape,
 };
 use crate::simulation::FrameLog;
 
@@ -112,26 +111,8 @@ pub(super) fn visual_shapes(arm: &Arm, link: usize) -> impl Iterator<Item = Scen
 fn shape_of(visual: &Visual) -> SceneShape {
     SceneShape {
         body_from_shape: visual.link_from_visual,
-        geometry: geometry(&visual.shape),
+        geometry: visual.shape.clone(),
         colour: visual.colour,
-    }
-}
-
-fn geometry(shape: &VisualShape) -> SceneGeometry {
-    match shape {
-        VisualShape::Box { size } => SceneGeometry::Box { size: *size },
-        VisualShape::Cylinder { radius, length } => SceneGeometry::Cylinder {
-            radius: *radius,
-            length: *length,
-        },
-        VisualShape::Sphere { radius } => SceneGeometry::Sphere { radius: *radius },
-        VisualShape::Mesh {
-            vertices,
-            triangles,
-        } => SceneGeometry::Mesh {
-            vertices: vertices.clone(),
-            triangles: triangles.clone(),
-        },
     }
 }
 
@@ -176,7 +157,7 @@ fn obstacles(cell: &Cell) -> impl Iterator<Item = SceneBody> {
             let (vertices, triangles) = solid.triangles();
             SceneShape {
                 body_from_shape: DPose3::IDENTITY,
-                geometry: SceneGeometry::Mesh {
+                geometry: VisualShape::Mesh {
                     vertices,
                     triangles,
                 },
@@ -230,7 +211,7 @@ fn part(cell: &Cell) -> SceneBody {
         entity: "workpiece".into(),
         shapes: vec![SceneShape {
             body_from_shape: DPose3::IDENTITY,
-            geometry: SceneGeometry::Mesh {
+            geometry: VisualShape::Mesh {
                 vertices: cell.setup.part.mesh.vertices().to_vec(),
                 triangles: cell.setup.part.mesh.triangles().to_vec(),
             },

@@ -3,8 +3,9 @@
 use glam::{DQuat, DVec3};
 use glamx::DPose3;
 
+use crate::arm::VisualShape;
 use crate::scene::colour::Colour;
-use crate::scene::{Scene, SceneGeometry, ScenePoses, SceneShape};
+use crate::scene::{Scene, ScenePoses, SceneShape};
 
 /// Sides of a drawn cylinder, and of a sphere about its axis.
 const SIDES: usize = 32;
@@ -62,10 +63,10 @@ type Smooth = ([DVec3; 3], [DVec3; 3]);
 
 fn triangles(shape: &SceneShape) -> Vec<Smooth> {
     match &shape.geometry {
-        SceneGeometry::Box { size } => cuboid(*size),
-        SceneGeometry::Cylinder { radius, length } => cylinder(*radius, *length),
-        SceneGeometry::Sphere { radius } => sphere(*radius),
-        SceneGeometry::Mesh {
+        VisualShape::Box { size } => cuboid(*size),
+        VisualShape::Cylinder { radius, length } => cylinder(*radius, *length),
+        VisualShape::Sphere { radius } => sphere(*radius),
+        VisualShape::Mesh {
             vertices,
             triangles,
         } => {

@@ -128,7 +128,8 @@ mod tests {
     use glamx::DPose3;
 
     use super::*;
-    use crate::scene::{SceneBody, SceneGeometry, ScenePoses, SceneShape};
+    use crate::arm::VisualShape;
+    use crate::scene::{SceneBody, ScenePoses, SceneShape};
 
     fn ball(radius: f64) -> Scene {
         Scene {
@@ -136,7 +137,7 @@ mod tests {
                 entity: "ball".to_owned(),
                 shapes: vec![SceneShape {
                     body_from_shape: DPose3::IDENTITY,
-                    geometry: SceneGeometry::Sphere { radius },
+                    geometry: VisualShape::Sphere { radius },
                     colour: [1, 2, 3, 255],
                 }],
                 world_from_body: ScenePoses::Static(DPose3::IDENTITY),
@@ -198,7 +199,7 @@ mod tests {
             triangles.push([here, next + 1, next]);
         }
         let mut scene = ball(0.1);
-        scene.bodies[0].shapes[0].geometry = SceneGeometry::Mesh {
+        scene.bodies[0].shapes[0].geometry = VisualShape::Mesh {
             vertices,
             triangles,
         };

@@ -3,7 +3,8 @@
 use glamx::DPose3;
 
 use super::*;
-use crate::scene::{ContactArrow, SceneBody, SceneGeometry, ScenePoses, SceneShape};
+use crate::arm::VisualShape;
+use crate::scene::{ContactArrow, SceneBody, ScenePoses, SceneShape};
 
 /// A plate of 200 x 100 x 10 mm with an edge along its upper front side, two frames, 50 N downwards in the second.
 fn plate() -> Scene {
@@ -19,7 +20,7 @@ fn plate() -> Scene {
             entity: "workpiece".to_owned(),
             shapes: vec![SceneShape {
                 body_from_shape: DPose3::IDENTITY,
-                geometry: SceneGeometry::Box {
+                geometry: VisualShape::Box {
                     size: DVec3::new(0.2, 0.1, 0.01),
                 },
                 colour: [150, 165, 178, 255],
@@ -107,7 +108,7 @@ fn a_turned_shape_on_a_turned_body_is_drawn_where_it_is() {
     let quarter = std::f64::consts::FRAC_PI_2;
     let mut scene = plate();
     let corner = DVec3::new(1.0, 2.0, 3.0);
-    scene.bodies[0].shapes[0].geometry = SceneGeometry::Mesh {
+    scene.bodies[0].shapes[0].geometry = VisualShape::Mesh {
         vertices: vec![corner, corner + DVec3::X, corner + DVec3::Y],
         triangles: vec![[0, 1, 2]],
     };

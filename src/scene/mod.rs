@@ -11,46 +11,18 @@ pub mod finished_edge;
 use glam::DVec3;
 use glamx::DPose3;
 
+use crate::arm::VisualShape;
 use crate::recording::RecordingError;
 use colour::Colour;
 use finished_edge::FinishedEdge;
-
-/// The shape of a part of a body, in the part's own frame.
-#[derive(Debug, Clone, PartialEq)]
-pub enum SceneGeometry {
-    /// A box centred on the origin.
-    Box {
-        /// Full edge lengths [m].
-        size: DVec3,
-    },
-    /// A cylinder about z, centred on the origin.
-    Cylinder {
-        /// Radius [m].
-        radius: f64,
-        /// Length [m].
-        length: f64,
-    },
-    /// A sphere centred on the origin.
-    Sphere {
-        /// Radius [m].
-        radius: f64,
-    },
-    /// A triangle mesh.
-    Mesh {
-        /// Corners [m].
-        vertices: Vec<DVec3>,
-        /// Corner indices, counter-clockwise from outside.
-        triangles: Vec<[u32; 3]>,
-    },
-}
 
 /// A part of a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneShape {
     /// Pose in the body's frame.
     pub body_from_shape: DPose3,
-    /// Its geometry.
-    pub geometry: SceneGeometry,
+    /// Its geometry, in its own frame.
+    pub geometry: VisualShape,
     /// Its colour.
     pub colour: Colour,
 }
@@ -207,7 +179,7 @@ impl Scene {
             check_count(what, poses.len(), self.frame_times.len())?;
         }
         for shape in &body.shapes {
-            if let SceneGeometry::Mesh {
+            if let VisualShape::Mesh {
                 vertices,
                 triangles,
             } = &shape.geometry
@@ -284,7 +256,7 @@ mod tests {
             entity: entity.to_owned(),
             shapes: vec![SceneShape {
                 body_from_shape: DPose3::IDENTITY,
-                geometry: SceneGeometry::Mesh {
+                geometry: VisualShape::Mesh {
                     vertices: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
                     triangles,
                 },

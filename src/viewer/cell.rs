@@ -15,11 +15,10 @@ use super::options::RerunOptions;
 use super::rrd::{RrdError, RrdWriter};
 use super::shading::shade;
 use super::timelines::Axes;
+use crate::arm::VisualShape;
 use crate::scene::colour::Colour;
 use crate::scene::error_scale::ErrorScale;
-use crate::scene::{
-    CollisionShape, EdgePath, Scene, SceneBody, SceneGeometry, ScenePoses, SceneShape,
-};
+use crate::scene::{CollisionShape, EdgePath, Scene, SceneBody, ScenePoses, SceneShape};
 
 /// Entity of which everything in space is a child.
 pub(super) const CELL: &str = "/cell";
@@ -99,25 +98,25 @@ fn write_shape(rrd: &mut RrdWriter, entity: &str, shape: &SceneShape) -> Result<
     rrd.add_static(entity, &transform(&shape.body_from_shape))?;
     let colour: Color = rerun_colour(shape.colour);
     match &shape.geometry {
-        SceneGeometry::Box { size } => {
+        VisualShape::Box { size } => {
             let solid = Boxes3D::from_half_sizes([triple(*size / 2.0)])
                 .with_colors([colour])
                 .with_fill_mode(FillMode::Solid);
             rrd.add_static(entity, &solid)
         }
-        SceneGeometry::Cylinder { radius, length } => {
+        VisualShape::Cylinder { radius, length } => {
             let solid = Cylinders3D::from_lengths_and_radii([*length as f32], [*radius as f32])
                 .with_colors([colour])
                 .with_fill_mode(FillMode::Solid);
             rrd.add_static(entity, &solid)
         }
-        SceneGeometry::Sphere { radius } => {
+        VisualShape::Sphere { radius } => {
             let solid = Ellipsoids3D::from_radii([*radius as f32])
                 .with_colors([colour])
                 .with_fill_mode(FillMode::Solid);
             rrd.add_static(entity, &solid)
         }
-        SceneGeometry::Mesh {
+        VisualShape::Mesh {
             vertices,
             triangles,
         } => {

@@ -16,10 +16,10 @@ use glamx::DPose3;
 use super::options::PHASES;
 use super::timelines::{PATH_LENGTH, SIM_TIME};
 use super::*;
+use crate::arm::VisualShape;
 use crate::recording::{PhaseSpan, RecordedChannel, Unit, schema};
 use crate::scene::{
-    CollisionShape, ContactArrow, EdgePath, SceneBody, SceneGeometry, SceneLimits, ScenePoses,
-    SceneShape,
+    CollisionShape, ContactArrow, EdgePath, SceneBody, SceneLimits, ScenePoses, SceneShape,
 };
 use glam::DVec3;
 
@@ -62,12 +62,12 @@ fn scene() -> Scene {
     let bodies = vec![
         SceneBody {
             entity: "arm/link_1".to_owned(),
-            shapes: vec![shape(SceneGeometry::Sphere { radius: 0.1 })],
+            shapes: vec![shape(VisualShape::Sphere { radius: 0.1 })],
             world_from_body: ScenePoses::Moving(poses.collect()),
         },
         SceneBody {
             entity: "workpiece".to_owned(),
-            shapes: vec![shape(SceneGeometry::Mesh {
+            shapes: vec![shape(VisualShape::Mesh {
                 vertices: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
                 triangles: vec![[0, 1, 2]],
             })],

@@ -3,7 +3,8 @@
 use glam::DVec3;
 use glamx::DPose3;
 
-use crate::scene::{Scene, SceneGeometry, ScenePoses, SceneShape};
+use crate::arm::VisualShape;
+use crate::scene::{Scene, ScenePoses, SceneShape};
 
 /// A box along the world's axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,13 +59,13 @@ pub(super) fn cell_box(scene: &Scene) -> Option<ViewBox> {
 /// Corners in the world of a box around a shape.
 fn corners(world_from_body: &DPose3, shape: &SceneShape) -> Vec<DVec3> {
     let (low, high) = match &shape.geometry {
-        SceneGeometry::Box { size } => (-*size / 2.0, *size / 2.0),
-        SceneGeometry::Cylinder { radius, length } => {
+        VisualShape::Box { size } => (-*size / 2.0, *size / 2.0),
+        VisualShape::Cylinder { radius, length } => {
             let half = DVec3::new(*radius, *radius, length / 2.0);
             (-half, half)
         }
-        SceneGeometry::Sphere { radius } => (DVec3::splat(-radius), DVec3::splat(*radius)),
-        SceneGeometry::Mesh { vertices, .. } => match ViewBox::around(vertices.iter().copied()) {
+        VisualShape::Sphere { radius } => (DVec3::splat(-radius), DVec3::splat(*radius)),
+        VisualShape::Mesh { vertices, .. } => match ViewBox::around(vertices.iter().copied()) {
             Some(around) => (around.low, around.high),
             None => return vec![],
         },
@@ -93,7 +94,7 @@ mod tests {
             entity: entity.to_owned(),
             shapes: vec![SceneShape {
                 body_from_shape: DPose3::IDENTITY,
-                geometry: SceneGeometry::Cylinder {
+                geometry: VisualShape::Cylinder {
                     radius: 0.5,
                     length: 2.0,
                 },

@@ -13,6 +13,7 @@ use glamx::DPose3;
 
 use super::super::error::AppError;
 use super::super::picture::{PART, device_bodies, visual_shapes};
+use crate::arm::VisualShape;
 use crate::arm::kinematics::link_poses;
 use crate::arm::{Arm, load_arm};
 use crate::cell::{CellError, arm_options};
@@ -21,9 +22,7 @@ use crate::diagnosis::joints::servo::Axes;
 use crate::plant::{ArmTrajectory, Channel, PlantParameters, follow};
 use crate::replay::LoadedCell;
 use crate::scene::colour::Colour;
-use crate::scene::{
-    ContactArrow, EdgePath, Scene, SceneBody, SceneGeometry, ScenePoses, SceneShape,
-};
+use crate::scene::{ContactArrow, EdgePath, Scene, SceneBody, ScenePoses, SceneShape};
 use crate::workpiece::load_mesh;
 
 /// Time between two frames [s].
@@ -249,7 +248,7 @@ fn part(cell: &LoadedCell) -> Result<SceneBody, AppError> {
         entity: "workpiece".into(),
         shapes: vec![SceneShape {
             body_from_shape: DPose3::IDENTITY,
-            geometry: SceneGeometry::Mesh {
+            geometry: VisualShape::Mesh {
                 vertices: mesh.vertices().to_vec(),
                 triangles: mesh.triangles().to_vec(),
             },

@@ -7,7 +7,8 @@ use glamx::DPose3;
 
 use super::super::picture::PART;
 use super::super::space::MILLIMETRES;
-use crate::scene::{Scene, SceneBody, SceneGeometry, ScenePoses, SceneShape};
+use crate::arm::VisualShape;
+use crate::scene::{Scene, SceneBody, ScenePoses, SceneShape};
 use crate::workpiece::{Convexity, CurveKind, EdgeCurve};
 
 /// Triangles of the part at most: about 2 MB of a page of less than 3 MB.
@@ -56,7 +57,7 @@ pub(super) fn scene_of(vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Scene 
             entity: "workpiece".to_owned(),
             shapes: vec![SceneShape {
                 body_from_shape: DPose3::IDENTITY,
-                geometry: SceneGeometry::Mesh {
+                geometry: VisualShape::Mesh {
                     vertices,
                     triangles,
                 },
