@@ -1,19 +1,15 @@
 //! Least squares from many starts: logarithms of the numbers, priors, a loss that forgives single residuals.
 //!
 //! ```text
-//! minimise  sum 2 (sqrt(1 + r^2) - 1),    covariance (J' W J)^-1,    W = 1/sqrt(1 + r^2)      (Levenberg, Marquardt; Holland and Welsch 1977)
+//! minimise  sum 2 (sqrt(1 + r^2) - 1),    (J' W J + l diag) d = -J' W r,    W = 1/sqrt(1 + r^2)      (Levenberg, Marquardt; Holland and Welsch 1977)
 //! ```
 //!
 //! r residuals, and the logarithms of the numbers by their priors' deviations. The starts are drawn from the priors; of many the best is followed, by
 //! a seed each, so that the same recordings give the same bytes whatever the machine.
 
-use std::convert::Infallible;
 use std::f64::consts::TAU;
 
-use basin::{
-    DenseMatrix, Executor, Jacobian, LevenbergMarquardt, Residual, RobustLeastSquares, SoftL1Loss,
-};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -53,11 +49,9 @@ const STARTS: u64 = 32;
 const DRAWS: usize = 200;
 /// Width of the draws by the priors' [1].
 const WIDTH: f64 = 0.6;
-/// Iterations of a start at most, and the share of its cost that a step gains below which it ends [1].
-const ITERATIONS: u64 = 45;
+/// Iterations of a start at most, and the gain below which it ends [1].
+const ITERATIONS: usize = 45;
 const GAIN: f64 = 1e-3;
-/// First steps are at most as long as this by the start [1].
-const BOUND: f64 = 1.0;
 /// Step of the difference quotients [1].
 const DIFFERENCE: f64 = 3e-3;
 
@@ -102,12 +96,19 @@ pub(super) fn refitted(targets: &[Targets], mass: f64, from: &FlangeModel) -> So
         .map(|i| (numbers[i] / problem.usual[i]).ln() / USUAL[i].1)
         .collect();
     x.resize(FLANGE_NUMBERS + targets.len(), 0.0);
-    problem.followed(x)
+    problem.followed(problem.place(x))
 }
 
 struct Problem<'a> {
     targets: &'a [Targets],
     usual: [f64; FLANGE_NUMBERS],
+}
+
+/// A place with its residuals.
+struct Place {
+    x: Vec<f64>,
+    residuals: Vec<f64>,
+    cost: f64,
 }
 
 impl<'a> Problem<'a> {
@@ -126,14 +127,18 @@ impl<'a> Problem<'a> {
         }))
     }
 
-    fn residuals(&self, x: &[f64]) -> Vec<f64> {
-        let model = self.model(x);
+    fn place(&self, x: Vec<f64>) -> Place {
+        let model = self.model(&x);
         let touches = &x[FLANGE_NUMBERS..];
         let mut residuals: Vec<f64> = (self.targets.iter().zip(touches))
             .flat_map(|(targets, touch)| targets.residuals(&model, touch * TOUCH))
             .collect();
-        residuals.extend(x);
-        residuals
+        residuals.extend(&x);
+        Place {
+            cost: residuals.iter().map(|r| loss(*r)).sum(),
+            x,
+            residuals,
+        }
     }
 
     fn started(&self, seed: u64) -> Solution {
@@ -148,11 +153,16 @@ impl<'a> Problem<'a> {
                 *place = WIDTH * drawn;
             }
             self.tune(&mut x, seed);
-            let rough: f64 = self.residuals(&x).iter().map(|r| (r * r).ln_1p()).sum();
-            (rough, x)
+            let place = self.place(x);
+            let rough: f64 = place.residuals.iter().map(|r| (r * r).ln_1p()).sum();
+            (rough, place)
         });
         let best = draws.reduce(|a, b| if b.0 < a.0 { b } else { a });
-        self.followed(best.map_or(vec![0.0; count], |(_, x)| x))
+        let start = match best {
+            Some((_, place)) => place,
+            None => self.place(vec![0.0; count]),
+        };
+        self.followed(start)
     }
 
     /// Makes one of the two modes that can ring in contact ring at the recorded frequency, by its spring: the slide on the structure, or head and
@@ -174,72 +184,81 @@ impl<'a> Problem<'a> {
         x[index] = (square * mass / self.usual[index]).ln() / USUAL[index].1;
     }
 
-    fn followed(&self, start: Vec<f64>) -> Solution {
-        let solver = LevenbergMarquardt::new()
-            .with_initial_step_bound(BOUND)
-            .with_relative_model_reduction_tolerance(Some(GAIN));
-        let robust = RobustLeastSquares::new(self, SoftL1Loss);
-        let result = Executor::from_start(robust, solver, start.clone())
-            .max_iter(ITERATIONS)
-            .run();
-        let x = result.map_or(start, |result| result.best_param().clone());
-        let residuals = self.residuals(&x);
-        let cost: f64 = residuals.iter().map(|r| loss(*r)).sum();
-        // J' W J
-        let mut weighted = self.differences(&x);
-        for (row, residual) in residuals.iter().enumerate() {
-            let weight = 1.0 / (1.0 + residual * residual).sqrt();
-            weighted.row_mut(row).scale_mut(weight.sqrt());
+    fn followed(&self, start: Place) -> Solution {
+        let mut place = start;
+        let (mut damping, mut idle) = (1e-2, 0);
+        for _ in 0..ITERATIONS {
+            let (normal, slope) = self.normal(&place);
+            let before = place.cost;
+            for _ in 0..6 {
+                if let Some(better) = self.step(&place, &normal, &slope, damping) {
+                    place = better;
+                    damping = f64::max(0.3 * damping, 1e-6);
+                    break;
+                }
+                damping *= 4.0;
+            }
+            idle = if place.cost > before * (1.0 - GAIN) {
+                idle + 1
+            } else {
+                0
+            };
+            if idle == 2 || damping > 1e6 {
+                break;
+            }
         }
-        let excess = cost / (residuals.len() - x.len()).max(1) as f64;
-        let covariance = weighted.tr_mul(&weighted).try_inverse();
+        let (normal, _) = self.normal(&place);
+        let excess = place.cost / (place.residuals.len() - place.x.len()).max(1) as f64;
+        let covariance = normal.try_inverse();
         let deviations = std::array::from_fn(|i| {
             let variance = covariance.as_ref().map_or(1.0, |c| c[(i, i)]);
             USUAL[i].1 * (variance * excess.max(1.0)).clamp(0.0, 1.0).sqrt()
         });
         Solution {
-            model: self.model(&x),
-            cost,
+            model: self.model(&place.x),
+            cost: place.cost,
             deviations,
         }
     }
 
-    /// Difference quotients of the residuals.
-    fn differences(&self, at: &[f64]) -> DMatrix<f64> {
-        let here = self.residuals(at);
-        let mut jacobian = DMatrix::zeros(here.len(), at.len());
-        for column in 0..at.len() {
+    fn step(
+        &self,
+        from: &Place,
+        normal: &DMatrix<f64>,
+        slope: &DVector<f64>,
+        damping: f64,
+    ) -> Option<Place> {
+        let mut damped = normal.clone();
+        for i in 0..damped.nrows() {
+            damped[(i, i)] *= 1.0 + damping;
+        }
+        let step = damped.cholesky()?.solve(&-slope);
+        let x = from.x.iter().zip(step.iter());
+        let place = self.place(x.map(|(x, d)| x + d.clamp(-1.5, 1.5)).collect());
+        (place.cost < from.cost).then_some(place)
+    }
+
+    /// J' W J and J' W r.
+    fn normal(&self, at: &Place) -> (DMatrix<f64>, DVector<f64>) {
+        let (rows, columns) = (at.residuals.len(), at.x.len());
+        let mut jacobian = DMatrix::zeros(rows, columns);
+        for column in 0..columns {
             // Of the logarithm of the number, whatever its prior's deviation.
             let step = DIFFERENCE / USUAL.get(column).map_or(1.0, |(_, deviation)| *deviation);
-            let mut x = at.to_vec();
+            let mut x = at.x.clone();
             x[column] += step;
-            for (row, moved) in self.residuals(&x).into_iter().enumerate() {
-                jacobian[(row, column)] = (moved - here[row]) / step;
+            let moved = self.place(x);
+            for row in 0..rows {
+                jacobian[(row, column)] = (moved.residuals[row] - at.residuals[row]) / step;
             }
         }
-        jacobian
-    }
-}
-
-impl Residual for &Problem<'_> {
-    type Param = Vec<f64>;
-    type Output = Vec<f64>;
-    type Error = Infallible;
-
-    fn residual(&self, x: &Vec<f64>) -> Result<Vec<f64>, Infallible> {
-        Ok(self.residuals(x))
-    }
-}
-
-impl Jacobian for &Problem<'_> {
-    type Jacobian = DenseMatrix;
-
-    fn jacobian(&self, x: &Vec<f64>) -> Result<DenseMatrix, Infallible> {
-        let quotients = self.differences(x);
-        let (rows, columns) = quotients.shape();
-        Ok(DenseMatrix::from_fn(rows, columns, |i, j| {
-            quotients[(i, j)]
-        }))
+        let mut weighted = jacobian.clone();
+        for row in 0..rows {
+            let weight = 1.0 / (1.0 + at.residuals[row].powi(2)).sqrt();
+            weighted.row_mut(row).scale_mut(weight);
+        }
+        let slope = weighted.transpose() * DVector::from_column_slice(&at.residuals);
+        (weighted.transpose() * jacobian, slope)
     }
 }
 
