@@ -31,7 +31,7 @@ pub struct Case {
     /// The scenario.
     pub scenario: BenchScenario,
     /// The same physics, as it is.
-    actual: Actual<PlantParameters>,
+    actual: Box<Actual<PlantParameters>>,
     /// Its device.
     pub device: Device,
     /// The same as plain equations.
@@ -129,7 +129,7 @@ impl Case {
             device,
             model,
             timetable,
-            actual: scenario.nominal.with(|_| ()),
+            actual: Box::new(scenario.nominal.with(|_| ())),
             scenario,
             times: Vec::new(),
             golden: Vec::new(),

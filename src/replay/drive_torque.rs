@@ -9,7 +9,7 @@
 //! and along the edge, mu friction of the tool, v speed along the edge. A ball that stands a little off its place meets a sharp edge on another normal, and mu is
 //! known roughly: the shares of a contact force along normal and across it, and of the friction, are given beside. (Swevers et al., IEEE Control Systems 27(5), 2007: inverse dynamics identification.)
 
-use super::{LoadedCell, ReplayCell};
+use super::load::LoadedCell;
 use crate::arm::dynamics::inverse_dynamics;
 use crate::plant::{ArmTrajectory, JointTrajectory};
 
@@ -50,7 +50,7 @@ impl LoadedCell {
         stroke: &[f64],
         force: &[f64],
     ) -> Vec<Option<Drive>> {
-        let mut drives: Vec<Option<Drive>> = (torques.iter().zip(&self.cell.chain.joints))
+        let mut drives: Vec<Option<Drive>> = (torques.iter().zip(&self.chain.joints))
             .map(|(torque, joint)| {
                 let rated = joint.effort;
                 torque.as_ref().map(|_| Drive {
@@ -70,8 +70,7 @@ impl LoadedCell {
                 continue;
             }
             let pressed = if touches { force[i] } else { 0.0 };
-            let friction = self.scenario.nominal.cell.friction;
-            let load = (self.cell).torques_at(trajectory, i, stroke[i], pressed, friction);
+            let load = self.torques_at(trajectory, i, stroke[i], pressed);
             for (j, drive) in drives.iter_mut().enumerate() {
                 if let (Some(drive), Some(torque)) = (drive, &torques[j])
                     && torque[i].is_finite()
@@ -85,18 +84,9 @@ impl LoadedCell {
         }
         drives
     }
-}
 
-impl ReplayCell {
     /// Speeds of the motors and what their drives have to give at a sample, at a stroke [m] and a force along the slide [N].
-    fn torques_at(
-        &self,
-        trajectory: &ArmTrajectory,
-        i: usize,
-        stroke: f64,
-        force: f64,
-        friction: f64,
-    ) -> Load {
+    fn torques_at(&self, trajectory: &ArmTrajectory, i: usize, stroke: f64, force: f64) -> Load {
         let span = trajectory.time[i + 1] - trajectory.time[i - 1];
         let joints = &trajectory.joints;
         let q: Vec<f64> = joints.iter().map(|j| j.angle[i]).collect();
@@ -108,8 +98,8 @@ impl ReplayCell {
         let mut torques = vec![0.0; q.len()];
         inverse_dynamics(
             &self.loaded(stroke),
-            self.world_from_base.rotation,
-            self.gravity,
+            self.scenario.arm.world_from_base.rotation,
+            self.scenario.gravity,
             &q,
             &rates,
             &bends,
@@ -123,10 +113,11 @@ impl ReplayCell {
         };
         let speed = (centre(i + 1) - centre(i - 1)).dot(edge.tangent) / span;
         let pressed = force / -normal.dot(trajectory.slide[i]);
-        let drag = friction * pressed * (speed / SLIDING).clamp(-1.0, 1.0);
+        let drag =
+            self.scenario.nominal.cell.friction * pressed * (speed / SLIDING).clamp(-1.0, 1.0);
         let across = edge.tangent.cross(normal);
         let on_tool = [normal * pressed, across * pressed, -edge.tangent * drag];
-        let point = centre(i) - normal * self.ball_radius;
+        let point = centre(i) - normal * self.scenario.nominal.mounting.tool_radius;
         let of = |joint: &JointTrajectory| {
             let lever = joint.axis[i].cross(point - joint.origin[i]);
             on_tool.map(|force| -lever.dot(force))

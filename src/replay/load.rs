@@ -1,10 +1,9 @@
 //! From the scenario file of a recorded cell to what does not change between its recordings.
 
-use super::{Commands, ReplayCell};
-use crate::arm::chain::JointKind;
+use crate::arm::chain::{JointKind, KinematicChain};
 use crate::arm::load_arm;
 use crate::cell::{CellError, arm_options, choose_edge, complete, station, with_housing};
-use crate::plant::{ArmTrajectory, EdgeStation, PlantParameters, SharpEdge};
+use crate::plant::{EdgeStation, PlantParameters, SharpEdge};
 use crate::scenario::{RecordedCell, load_recorded_cell};
 use crate::workpiece::{EdgeCurve, load_mesh};
 use glam::DVec3;
@@ -17,12 +16,16 @@ use std::sync::Arc;
 pub struct LoadedCell {
     /// The file.
     pub scenario: RecordedCell,
-    /// Arm, device and tool.
-    pub cell: ReplayCell,
     /// Names of the arm's joints, base first.
     pub joints: Vec<String>,
+    /// The arm up to its flange, with the device's housing on it.
+    pub chain: KinematicChain,
     /// The edge in the part's frame.
-    edge: EdgeCurve,
+    pub(super) edge: EdgeCurve,
+    /// Its middle in the world.
+    pub(super) middle: EdgeStation,
+    /// The edge as the ball meets it; none where it is met along its bisector.
+    pub(super) sharp: Option<Arc<SharpEdge>>,
 }
 
 impl LoadedCell {
@@ -61,30 +64,14 @@ impl LoadedCell {
         let mesh = load_mesh(&scenario.workpiece.mesh, scenario.workpiece.mesh_scale)?;
         let edge = choose_edge(&scenario.path, &scenario.workpiece, &mesh)?;
         complete(&mut scenario.nominal, &scenario.arm, &arm.chain);
-        let (device, mounting) = (&scenario.nominal.device, &scenario.nominal.mounting);
-        let sharp = scenario
-            .observed
-            .sharp_edge
-            .then(|| Arc::new(sharp_edge(&edge, scenario.workpiece.world_from_part)));
-        let cell = ReplayCell {
-            sharp,
-            observed: scenario.observed,
-            encoder_noise: scenario.joint_noise,
-            chain: with_housing(&arm.chain, mounting),
-            world_from_base: scenario.arm.world_from_base,
-            gravity: scenario.gravity,
-            moving_mass: device.moving_mass,
-            mass_centre: mounting.moving_centre_of_mass,
-            ball_centre: mounting.tool_centre,
-            ball_radius: mounting.tool_radius,
-            full_stroke: device.full_stroke,
-            middle: station(&edge, scenario.workpiece.world_from_part, 0.5 * edge.length),
-        };
+        let part = scenario.workpiece.world_from_part;
         Ok(Self {
-            scenario,
-            cell,
             joints,
+            chain: with_housing(&arm.chain, &scenario.nominal.mounting),
+            middle: station(&edge, part, 0.5 * edge.length),
+            sharp: (scenario.observed.sharp_edge).then(|| Arc::new(sharp_edge(&edge, part))),
             edge,
+            scenario,
         })
     }
 
@@ -95,38 +82,6 @@ impl LoadedCell {
             effect.put_into(&mut plant);
         }
         plant
-    }
-
-    /// The arm's trajectory in a recording: times [s], commanded places along the edge [m] and angles of the joints [rad], servos of a bandwidth [Hz].
-    pub fn trajectory(
-        &self,
-        time: &[f64],
-        path: &[f64],
-        joints: &[Vec<f64>],
-        bandwidth: f64,
-    ) -> ArmTrajectory {
-        self.trajectory_of(time, path, joints, None, bandwidth)
-    }
-
-    /// The same where the encoders' readings [rad], of a cell whose motors do not keep to a law that is known, say where the joints went.
-    pub fn trajectory_of(
-        &self,
-        time: &[f64],
-        path: &[f64],
-        joints: &[Vec<f64>],
-        encoders: Option<&[Option<Vec<f64>>]>,
-        bandwidth: f64,
-    ) -> ArmTrajectory {
-        let world_from_part = self.scenario.workpiece.world_from_part;
-        let station = |place: &f64| station(&self.edge, world_from_part, *place);
-        let edge: Vec<EdgeStation> = path.iter().map(station).collect();
-        let commands = Commands {
-            time,
-            joints,
-            edge: &edge,
-            encoders: encoders.filter(|_| self.scenario.observed.motors_by_encoders),
-        };
-        self.cell.trajectory(commands, bandwidth)
     }
 }
 

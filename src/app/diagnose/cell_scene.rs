@@ -202,11 +202,15 @@ fn held(mut values: Vec<f64>, count: usize) -> Vec<f64> {
 
 /// Poses of the links in the world, frame by frame.
 fn poses(cell: &LoadedCell, angles: &[Vec<f64>], frames: &[usize]) -> Vec<Vec<DPose3>> {
-    let cell = &cell.cell;
     let of = |index: &usize| {
         let q: Vec<f64> = angles.iter().map(|angle| angle[*index]).collect();
         let mut poses = vec![DPose3::IDENTITY; q.len()];
-        link_poses(&cell.chain, cell.world_from_base, &q, &mut poses);
+        link_poses(
+            &cell.chain,
+            cell.scenario.arm.world_from_base,
+            &q,
+            &mut poses,
+        );
         poses
     };
     frames.iter().map(of).collect()
@@ -217,7 +221,7 @@ fn arm_bodies(cell: &LoadedCell, arm: &Arm, poses: &[Vec<DPose3>]) -> Vec<SceneB
         entity: format!("arm/{}", arm.link_names[index]),
         shapes: visual_shapes(arm, index).collect(),
         world_from_body: match index {
-            0 => ScenePoses::Static(cell.cell.world_from_base),
+            0 => ScenePoses::Static(cell.scenario.arm.world_from_base),
             _ => ScenePoses::Moving(poses.iter().map(|links| links[index - 1]).collect()),
         },
     };
@@ -230,7 +234,7 @@ fn of_device(
     frames: &[usize],
     stroke: &[f64],
 ) -> [SceneBody; 2] {
-    let chain = &cell.cell.chain;
+    let chain = &cell.chain;
     let flange = |links: &Vec<DPose3>| links[chain.len() - 1] * chain.tip_from_last;
     let flanges: Vec<DPose3> = poses.iter().map(flange).collect();
     let slides = flanges.iter().zip(frames).map(|(flange, index)| {

@@ -134,7 +134,10 @@ fn a_running_cell_stores_a_number_of_its_device_once_as_stated_and_once_as_it_is
         pace,
     } = &simulation;
     let borrowed: &RunningDevice<'_> = device;
-    assert!(std::ptr::eq(borrowed.device.parameters(), &actual.device));
+    assert!(std::ptr::eq(
+        borrowed.device.parameters(),
+        &raw const actual.device
+    ));
     let parameters = count(&actual.device, &values);
     let own = less(
         count(device, &values),
