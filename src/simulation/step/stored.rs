@@ -97,6 +97,13 @@ fn a_running_cell_stores_a_number_of_its_device_once_as_stated_and_once_as_it_is
     assert_eq!(count(controller, &values), reduced);
     let rest = (resolution, middle, estimated, &arm.chain, passes, notes);
     assert_eq!(count(&rest, &values), never);
+    count_running(&simulation, &values, &reduced);
+}
+
+/// The same of what runs; `reduced` is what the controller has.
+fn count_running(simulation: &Simulation<'_>, values: &[f64], reduced: &[usize]) {
+    let actual = &simulation.cell.setup.actual;
+    let never = vec![0; NUMBERS.len()];
     let Simulation {
         cell: _,
         world: _, // Rapier has its own masses.
@@ -132,23 +139,20 @@ fn a_running_cell_stores_a_number_of_its_device_once_as_stated_and_once_as_it_is
         cutting: _,
         behind,
         pace,
-    } = &simulation;
+    } = simulation;
     let borrowed: &RunningDevice<'_> = device;
     assert!(std::ptr::eq(
         borrowed.device.parameters(),
         &raw const actual.device
     ));
-    let parameters = count(&actual.device, &values);
-    let own = less(
-        count(device, &values),
-        &[count(actual, &values), parameters],
-    );
+    let parameters = count(&actual.device, values);
+    let own = less(count(device, values), &[count(actual, values), parameters]);
     assert_eq!(own, NUMBERS.map(|(.., device)| device).to_vec());
     let laws = (servo, lags, motors, torques, saturation, laws, limits);
-    assert_eq!(count(&laws, &values), never);
+    assert_eq!(count(&laws, values), never);
     let read = (encoders, encoder_noise, errors, sensors, readings);
-    assert_eq!(count(&read, &values), never);
-    assert_eq!(count(its_controller, &values), reduced);
+    assert_eq!(count(&read, values), never);
+    assert_eq!(count(its_controller, values), reduced);
     let rest = (reference, touches, pressed, answer, carried, slide_force);
-    assert_eq!(count(&(rest, next_frame, behind, pace), &values), never);
+    assert_eq!(count(&(rest, next_frame, behind, pace), values), never);
 }
