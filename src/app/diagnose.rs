@@ -28,7 +28,6 @@ use super::output::say;
 use super::progress::StagedLine;
 use crate::diagnosis::effort::EffortLimit;
 use crate::diagnosis::search::progress::Progress;
-use crate::diagnosis::settings::Settings;
 use crate::plant::LawText;
 use crate::replay::LoadedCell;
 use crate::scenario::effects::law_of_line;
@@ -61,7 +60,7 @@ pub(super) struct DiagnoseArguments {
     #[arg(long = "try", value_name = "LAW", value_parser = law_of_line, allow_hyphen_values = true, conflicts_with = "all")]
     tried: Option<LawText>,
     /// Stop the search after so many model evaluations, with the best answer so
-    /// far: the same answer each time [default: 10000, without --limit]
+    /// far: the same answer each time
     #[arg(long, value_name = "EVALUATIONS", help_heading = "Limits",
         value_parser = clap::value_parser!(u64).range(1..))]
     effort: Option<u64>,
@@ -87,7 +86,7 @@ impl DiagnoseArguments {
         match (self.effort, self.limit) {
             (Some(evaluations), _) => EffortLimit::Evaluations(evaluations),
             (None, Some(time)) => EffortLimit::Time(time),
-            (None, None) => Settings::DEFAULT.limit,
+            (None, None) => EffortLimit::None,
         }
     }
 }
@@ -182,7 +181,7 @@ pub(super) fn answer_case(
 ) -> Result<crate::diagnosis::answer::Answer, AppError> {
     let prepared = one::Prepared::new(
         case,
-        (None, None, Settings::DEFAULT.limit),
+        (None, None, EffortLimit::None),
         out,
         Standing::Replace,
     )?;

@@ -60,6 +60,7 @@ pub fn diagnose(
     let is_spent = search.is_spent();
     let effort = evidence.effort.report();
     notes.extend(effort.note());
+    notes.extend(evidence.effort.note_of_formulas());
     let depth = match is_spent {
         true => Depth::OneStep,
         false => Depth::Refit(LEFT_OUT),

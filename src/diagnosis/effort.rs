@@ -38,7 +38,7 @@ impl EffortReport {
         let count = self.model_evaluations;
         self.stopped.then(|| {
             format!(
-                "the search was stopped by its limit after {count} model evaluations and the answer is the best so far: what it did not come to is not ruled out; `--effort {count}` comes to the same answer, a larger one goes on"
+                "the search was stopped by its limit after {count} model evaluations and the answer is the best so far: what it did not come to is not ruled out; `--effort {count}` comes to the same answer"
             )
         })
     }
@@ -57,6 +57,10 @@ struct Count {
     passed: AtomicU64,
     /// Evaluations at the checkpoint that stopped the search; 0 where none did.
     stopped: AtomicU64,
+    /// Evaluations spent on formulas.
+    on_formulas: AtomicU64,
+    /// Evaluations from which no formula was asked for any more; 0 where all were.
+    without_formulas: AtomicU64,
 }
 
 impl Effort {
@@ -87,6 +91,33 @@ impl Effort {
             model_evaluations: stopped.unwrap_or_else(|| self.evaluations()),
             stopped: stopped.is_some(),
         }
+    }
+
+    /// What is found in a search for formulas; nothing where so many evaluations were spent on such before, or at a limit. A checkpoint.
+    pub(super) fn on_formulas<T>(&self, most: u64, search: impl FnOnce() -> Vec<T>) -> Vec<T> {
+        let begun = self.evaluations();
+        if self.0.on_formulas.load(Ordering::Relaxed) >= most {
+            let first = &self.0.without_formulas;
+            let _ = first.compare_exchange(0, begun, Ordering::Relaxed, Ordering::Relaxed);
+            return Vec::new();
+        }
+        if self.is_spent() {
+            return Vec::new();
+        }
+        let found = search();
+        let spent = self.evaluations() - begun;
+        self.0.on_formulas.fetch_add(spent, Ordering::Relaxed);
+        found
+    }
+
+    /// In a sentence for people that no formula was asked for any more, where that is so.
+    pub(super) fn note_of_formulas(&self) -> Option<String> {
+        let count = self.0.without_formulas.load(Ordering::Relaxed);
+        (count > 0).then(|| {
+            format!(
+                "no further law that the list does not hold was looked for after {count} model evaluations: none is ruled out by that"
+            )
+        })
     }
 
     /// Evaluations at which a limit stopped the search; none where it came to its own end.
@@ -142,5 +173,25 @@ mod tests {
         assert_eq!(walk(&Effort::default()), None);
         // Once stopped, it stays so.
         assert!(timed.is_spent());
+    }
+
+    /// A planted law was not looked for, as the known effects had taken so many evaluations before: what is spent on formulas counts alone.
+    #[test]
+    fn past_its_evaluations_no_formula_is_asked_for_and_that_is_said_with_where_it_began() {
+        let effort = Effort::default();
+        let search = || {
+            effort.on_formulas(10, || {
+                (0..6).for_each(|_| effort.count());
+                vec![()]
+            })
+        };
+        (0..20).for_each(|_| effort.count());
+        assert_eq!([search().len(), search().len()], [1, 1]);
+        assert_eq!(effort.note_of_formulas(), None);
+        assert_eq!([search().len(), search().len()], [0, 0]);
+        let note = effort.note_of_formulas().unwrap();
+        assert!(note.contains("after 32 model evaluations"), "{note}");
+        // The search itself goes on.
+        assert!(!effort.report().stopped);
     }
 }

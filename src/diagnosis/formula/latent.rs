@@ -331,6 +331,25 @@ impl Search<'_> {
         scale: &Scale,
         observer: &mut Observer<'_>,
     ) -> Vec<Hypothesis> {
+        self.within_effort(|| self.formulas_beside(base, rival, scale, observer))
+    }
+
+    /// What a search for formulas finds, unless so much was spent on such before that none is begun.
+    pub(in crate::diagnosis) fn within_effort(
+        &self,
+        search: impl FnOnce() -> Vec<Hypothesis>,
+    ) -> Vec<Hypothesis> {
+        let most = self.settings.formulas_within;
+        self.evidence.effort.on_formulas(most, search)
+    }
+
+    fn formulas_beside(
+        &self,
+        base: &Hypothesis,
+        rival: f64,
+        scale: &Scale,
+        observer: &mut Observer<'_>,
+    ) -> Vec<Hypothesis> {
         let base = &self.held(base);
         let noise = self.left_alone(scale);
         let limit = noise + PROMISING * (rival - noise).max(0.0);

@@ -134,7 +134,7 @@ impl Search<'_> {
         if found.is_empty() && !scale.is_explained(best) && !self.is_spent() {
             found = self.latent(unexplained, rival, scale, observer);
             if scale.is_half_explained(best) && !self.is_spent() {
-                found.extend(self.latent(best, rival, scale, observer));
+                found.extend(self.within_effort(|| self.latent(best, rival, scale, observer)));
             }
             found.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
         }
