@@ -40,10 +40,13 @@ impl AdviceArguments {
         given: &[KeyValue],
         quiet: bool,
     ) -> AppError {
-        let AppError::Run(RunError::Cell(refusal)) = &error else {
-            return error;
+        let advice = match &error {
+            AppError::Run(run) => match &**run {
+                RunError::Cell(refusal) => self.search(template, given, refusal, quiet),
+                _ => return error,
+            },
+            _ => return error,
         };
-        let advice = self.search(template, given, refusal, quiet);
         match advice.tried.is_empty() {
             true => error,
             false => AppError::Advised {

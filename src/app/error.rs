@@ -43,7 +43,7 @@ pub enum AppError {
     },
     /// A scenario, its run or its numbers.
     #[error(transparent)]
-    Run(#[from] RunError),
+    Run(Box<RunError>),
     /// A refusal with what would make the job possible.
     #[error("{source}{advice}")]
     Advised {
@@ -386,12 +386,12 @@ macro_rules! of_a_run {
     ($($error:ty),*) => {
         $(impl From<$error> for AppError {
             fn from(error: $error) -> Self {
-                Self::Run(error.into())
+                Self::Run(Box::new(error.into()))
             }
         })*
     };
 }
-of_a_run!(ScenarioError, CellError, RecordingError);
+of_a_run!(RunError, ScenarioError, CellError, RecordingError);
 
 impl From<CaseError> for AppError {
     fn from(error: CaseError) -> Self {

@@ -104,7 +104,7 @@ pub(super) fn one(
                     (arguments.advice).with_advice(error, template, &variant.edits, quiet)
                 }
                 None => match (&error, read()) {
-                    (AppError::Run(RunError::Cell(_)), Ok(template)) => {
+                    (AppError::Run(run), Ok(template)) if matches!(**run, RunError::Cell(_)) => {
                         (arguments.advice).with_advice(error, &template, &[], quiet)
                     }
                     _ => error,
