@@ -7,7 +7,7 @@ use criterion::{BenchmarkId, Criterion};
 use idc_cell::arm::chain::MAX_JOINTS;
 use idc_cell::arm::dynamics::inverse_dynamics;
 use idc_cell::cell::Cell;
-use idc_cell::device::PistonMotion;
+use idc_cell::device::{Device, PistonMotion};
 use idc_cell::workpiece::ContactSurface;
 
 use crate::job::{Following, follow_span, holding_world};

@@ -125,7 +125,7 @@ fn scene(cell: &Cell, steps: usize) -> Result<Value, String> {
     }
     let base_from_part = base_from_world * cell.setup.part.world_from_part;
     let turned = base_from_part.rotation;
-    let mass = nominal.nominal.mounting.moving_mass;
+    let mass = nominal.device.moving_mass;
     let gains = servo_gains(cell);
     let follow = follow_span(cell).0;
     let step = scenario.simulation.step;
