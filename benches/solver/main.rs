@@ -49,12 +49,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     criterion.final_summary();
     if measuring {
         let calls = beside_lsoda(&step);
-        let rows = table::print(&[
-            step,
-            Case::read("retract", "scenarios/retract.toml")?,
-            Case::read("impact", "tests/reference/bench/impact.toml")?,
-            Case::stiff("scenarios/retract.toml")?,
-        ]);
+        let mut cases = vec![step];
+        for (name, file) in [
+            ("retract", "scenarios/retract.toml"),
+            ("impact", "tests/reference/bench/impact.toml"),
+        ] {
+            cases.push(Case::read(name, file)?);
+        }
+        cases.push(Case::stiff("scenarios/retract.toml")?);
+        let rows = table::print(&cases);
         // Without that crate's methods it would say half of it.
         if cfg!(feature = "diffsol") {
             let path = case::project("docs/pictures/solver_work_precision.svg");
