@@ -19,7 +19,7 @@ fn of(count: u64, template: &str, hidden: bool) -> ProgressBar {
     bar
 }
 
-/// A bar of so many parts, of which it has yet to be told.
+/// A bar of so many parts, none of them reported yet.
 pub(super) fn bar(verb: &str, hidden: bool) -> ProgressBar {
     let template = format!("{verb} {{wide_bar}} {{percent:>3}} %, {{eta}} left");
     of(0, &template, hidden)

@@ -497,6 +497,19 @@ mod tests {
         }
     }
 
+    /// The lower end of the band, 40 Hz, was taken for the frequency of a run that settles slowly, and flanges were fitted to it.
+    #[test]
+    fn a_force_that_settles_slowly_rings_at_no_frequency() {
+        let time: Vec<f64> = (0..500).map(|i| 8e-4 * f64::from(i)).collect();
+        let force = |ringing: f64| -> Vec<f64> {
+            let at = |t: &f64| 20.0 * (-8.0 * t).exp() + ringing * (TAU * 80.0 * t).sin();
+            time.iter().map(at).collect()
+        };
+        assert_eq!(loudest(&time, &force(0.0)), None);
+        let rings = loudest(&time, &force(1.0)).unwrap();
+        assert!((rings - 80.0).abs() < 1.0, "{rings}");
+    }
+
     #[test]
     fn what_was_planted_comes_back_and_a_run_at_another_speed_is_foretold() {
         let shown = run(0.1, 1).metrics().unwrap();

@@ -55,11 +55,6 @@ impl EffectRequest {
         Ok(request)
     }
 
-    /// Whether it is about one joint, and does not say of which.
-    pub fn wants_joint(&self) -> bool {
-        self.joint.is_none() && self.is_of_joint()
-    }
-
     fn is_of_joint(&self) -> bool {
         every().any(|effect| {
             let (name, joint) = effect.vocabulary();

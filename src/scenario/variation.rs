@@ -58,12 +58,6 @@ impl ScenarioTemplate {
         &self.path
     }
 
-    /// The file's text, as it was read.
-    #[must_use]
-    pub fn own_text(&self) -> &str {
-        &self.text
-    }
-
     /// Whether it is of a bench, not of a cell.
     #[must_use]
     pub fn is_bench(&self) -> bool {

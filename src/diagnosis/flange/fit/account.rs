@@ -1,4 +1,4 @@
-//! What people are told of a simulated flange.
+//! The simulated flange in words.
 
 use super::report::{SimulatedFlange, SimulatedResult, SimulatedRun};
 use crate::quantity::significant;
@@ -84,7 +84,7 @@ pub(in crate::diagnosis) fn unseen(flange: &SimulatedFlange) -> Vec<String> {
 }
 
 fn beside(run: &SimulatedRun) -> String {
-    let told = |what: &str, unit: &str, value: &SimulatedResult| {
+    let part = |what: &str, unit: &str, value: &SimulatedResult| {
         format!(
             "{what} {} {unit} ({} to {}), recorded {} ({:+.0} %)",
             significant(value.simulated, 3),
@@ -94,15 +94,15 @@ fn beside(run: &SimulatedRun) -> String {
             100.0 * value.error()
         )
     };
-    let mut parts = vec![told("peak", "N", &run.peak_n)];
+    let mut parts = vec![part("peak", "N", &run.peak_n)];
     parts.extend(
         run.ringing_hz
-            .map(|ringing| told("ringing", "Hz", &ringing)),
+            .map(|ringing| part("ringing", "Hz", &ringing)),
     );
-    parts.push(told("settled after", "s", &run.settling_s));
+    parts.push(part("settled after", "s", &run.settling_s));
     parts.extend(
         run.sliding_spread_n
-            .map(|s| told("spread while sliding", "N", &s)),
+            .map(|s| part("spread while sliding", "N", &s)),
     );
     parts.join("; ")
 }
