@@ -9,6 +9,7 @@
 //! - [`device`]: the device made of them
 //! - [`mesh_file`]: STL, OBJ, COLLADA, PLY and glTF files as triangles
 //! - [`arm`]: the robot arm from URDF: kinematics, dynamics
+//! - [`removal`]: what a turning tool takes off an edge
 //! - [`workpiece`]: mesh, edges, burrs, where a ball touches
 //! - [`collision`]: bodies that must not meet, checked along a motion
 //! - [`path`]: the tool's path along an edge and the joint motion that follows it
@@ -28,7 +29,8 @@
 //! - `viewer`: both for Rerun's viewer
 //! - [`metrics`]: the numbers of a run
 //! - [`run`]: a scenario run to its end, with its numbers
-//! - [`report`]: tables for people
+//! - [`document`]: results for people as typed documents, rendered as text, Markdown and HTML
+//! - [`report`]: results as such documents
 //! - [`design`]: the design study
 //! - [`plant`]: a rig as one description of numbers, driven by the inputs of a recording
 //! - [`flange`]: another device, a contact flange
@@ -45,7 +47,6 @@
 //! - [`fleet`]: many recordings of many devices, and what their numbers say over time
 //! - [`figure`]: signals as SVG pictures
 //! - [`drawing`]: a scene as an SVG picture
-//! - [`page`]: one HTML file for a browser, with everything in it
 //! - [`app`]: the command line and the files that it writes
 // Units stand in square brackets, which rustdoc would take for links.
 #![allow(rustdoc::broken_intra_doc_links)]
@@ -64,6 +65,7 @@ pub mod demonstration;
 pub mod design;
 pub mod device;
 pub mod diagnosis;
+pub mod document;
 #[cfg(feature = "cli")]
 pub mod drawing;
 pub mod effects;
@@ -80,8 +82,6 @@ pub mod laboratory;
 pub mod listed;
 pub mod mesh_file;
 pub mod metrics;
-#[cfg(feature = "cli")]
-pub mod page;
 pub mod path;
 pub mod physics;
 #[cfg(feature = "cli")]

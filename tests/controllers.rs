@@ -4,12 +4,15 @@
 
 use idc_cell::control::force::limit::{dead_time_error, least_settling_time};
 use idc_cell::device::DeviceParameters;
-use idc_cell::figure::{Figure, Panel, Role, Series, Stroke, svg};
 use idc_cell::recording::{Recording, schema};
 use idc_cell::rig::Rig;
 use idc_cell::scenario::bench::{BenchScenario, CommandScenario, LoadScenario};
 use idc_cell::scenario::{ForceLaw, load_bench};
 use idc_cell::sensing::SensingParameters;
+use idc_cell::{
+    document::{Figure, Panel, Role, Series, Stroke},
+    figure::svg,
+};
 
 use crate::common::{project, run, scenario};
 

@@ -1,7 +1,8 @@
 //! figures.svg of a bench run: the source paper's pictures - pressure, force and stroke against time.
 
 use super::estimate_figure;
-use crate::figure::{Figure, FigureError, Marker, Panel, Role, Series, Stroke, svg};
+use crate::document::{Figure, Marker, Panel, Role, Series, Stroke};
+use crate::figure::{FigureError, svg};
 use crate::physics::valve::ValvePosition;
 use crate::recording::{Recording, schema};
 use crate::scenario::BenchScenario;

@@ -15,8 +15,8 @@ use super::report::{RunResult, read_json, read_run};
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::answer::estimate::Estimate;
 use crate::diagnosis::answer::words::{capital, of_column, percent, spoken};
+use crate::document::html;
 use crate::metrics::Label;
-use crate::page::html;
 use crate::recording::atomic::write_text;
 use numbers::{Compared, MOST, Row, text};
 

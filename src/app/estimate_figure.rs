@@ -1,6 +1,6 @@
 //! The estimator in figures.svg of a bench run: its band about the force, and its error.
 
-use crate::figure::{Panel, Role, Series, Stroke};
+use crate::document::{Panel, Role, Series, Stroke};
 use crate::recording::{Recording, schema};
 use crate::stats::{NORMAL_95, median};
 

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 
 use super::error::AppError;
 use super::space;
+use crate::document::Drawing;
 use crate::drawing;
 use crate::metrics::FOLLOW_PHASE;
-use crate::page::Drawing;
 use crate::recording::atomic::{UnfinishedFolder, make_folder, write_text};
 use crate::recording::parquet::write_parquet;
 use crate::recording::provenance::Provenance;

@@ -30,7 +30,7 @@ use super::output::say;
 use super::vary::{self, SWEEP};
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::difference::comparison::Comparison;
-use crate::page::html;
+use crate::document::html;
 use crate::recording::RecordingError;
 use crate::recording::atomic::write_text;
 use crate::recording::csv::EdgeProfile;

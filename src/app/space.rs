@@ -2,8 +2,8 @@
 
 use glam::{DQuat, DVec3};
 
+use crate::document::{Drawing, DrawnArrow, DrawnBody, DrawnLegend, DrawnLine, DrawnView, Shade};
 use crate::drawing::{self, CELL_EYE, Solid, edge_direction};
-use crate::page::{Drawing, DrawnArrow, DrawnBody, DrawnLegend, DrawnLine, DrawnView, Shade};
 use crate::quantity::with_unit;
 use crate::scene::Scene;
 use crate::scene::colour::Colour;

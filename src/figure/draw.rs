@@ -4,13 +4,14 @@ use std::collections::BTreeSet;
 
 use plotters::style::{Color, RGBColor, ShapeStyle, WHITE};
 
+use super::FigureError;
 use super::canvas::{self, Anchor, Canvas, Drawn, fitting};
 use super::layout::{
     KEY, LEFT, Layout, NORMAL, RIGHT, ROW, SMALL, SPACE, Spot, TICK, TITLE_HEIGHT, WIDTH, across,
     layouts,
 };
 use super::trace::{PX, Place, over_quantity, over_time};
-use super::{Figure, FigureError, Horizontal, Role, Series, Stroke};
+use crate::document::{Figure, Horizontal, Role, Series, Stroke};
 
 /// Size of the figure's title.
 const LARGE: i32 = 18 * PX;

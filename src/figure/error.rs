@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::{Figure, Horizontal, Panel, Series};
+use crate::document::{Figure, Horizontal, Panel, Series};
 
 /// Why a figure cannot be drawn.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]

@@ -1,8 +1,9 @@
 //! Where everything in a figure has its place.
 
+use super::FigureError;
 use super::canvas::text_width;
 use super::trace::{PX, Scale};
-use super::{Figure, FigureError, Horizontal, Panel, Series};
+use crate::document::{Figure, Horizontal, Panel, Series};
 
 /// Width of the figure.
 pub(super) const WIDTH: i32 = 960 * PX;
@@ -193,8 +194,8 @@ impl Layout<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Marker, Role, Stroke};
     use super::*;
+    use crate::document::{Marker, Role, Stroke};
 
     fn panel(labels: &[&str]) -> Panel<'static> {
         let series = labels.iter().map(|label| {

@@ -9,11 +9,10 @@ mod canvas;
 mod draw;
 mod error;
 mod layout;
-mod panel;
 mod trace;
 
+use crate::document::Figure;
 pub use error::FigureError;
-pub use panel::{Band, Figure, Horizontal, Marker, Panel, Role, Series, Stroke};
 
 /// Draws a figure as an SVG document, 960 px wide; the same figure gives the same bytes.
 ///
@@ -27,6 +26,7 @@ pub fn svg(figure: &Figure) -> Result<String, FigureError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::document::{Band, Horizontal, Marker, Panel, Role, Series, Stroke};
 
     /// 16 s at 1 kHz of something between -1 and 1 that never stands still.
     fn ragged() -> (Vec<f64>, Vec<f64>) {

@@ -1,6 +1,6 @@
 //! From samples to what a picture can show: axes with round ticks, lines with few points.
 
-use super::Series;
+use crate::document::Series;
 
 /// A place in the picture, in tenths of a pixel.
 pub(super) type Place = (i32, i32);
@@ -154,8 +154,8 @@ fn without_level_middles(places: &[Place]) -> Vec<Place> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Role, Stroke};
     use super::*;
+    use crate::document::{Role, Stroke};
 
     #[test]
     fn ticks_are_round_and_lie_inside() {

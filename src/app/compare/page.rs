@@ -2,8 +2,9 @@
 
 use super::super::report::{ROLES, RunResult, chart_groups};
 use super::numbers::{Compared, MOST, Row, short};
-use crate::figure::{Horizontal, Panel, Series, Stroke};
-use crate::page::{Block, Chart, Fact, Page, PageSection, PageTable, TableCell, Tone};
+use crate::document::{
+    Block, Cell, Document, Fact, Horizontal, Panel, Section, Series, Stroke, Table, Tone,
+};
 use crate::recording::schema;
 
 /// Names that a heading has room for.
@@ -19,7 +20,7 @@ const SIGNALS: [&str; 7] = [
     schema::PATH_ERROR_AXIAL,
 ];
 
-pub(super) fn page(compared: &Compared) -> Page<'_> {
+pub(super) fn page(compared: &Compared) -> Document<'_> {
     let names = short(&compared.names);
     let facts = compared.names.iter().zip(&compared.verdicts);
     let facts = facts.map(|(name, verdict)| Fact {
@@ -33,10 +34,10 @@ pub(super) fn page(compared: &Compared) -> Page<'_> {
         let words = format!("Signals of {few} of the {many} runs, from the first to the last.");
         drawn.insert(0, Block::Paragraph(words));
     }
-    let signals = PageSection::new("Over one another", drawn);
-    let numbers = PageSection::new("Numbers", vec![Block::PageTable(table(compared, &names))]);
+    let signals = Section::new("Over one another", drawn);
+    let numbers = Section::new("Numbers", vec![Block::Table(table(compared, &names))]);
     let sections = [signals, numbers].into_iter();
-    Page {
+    Document {
         title: "Comparison".to_owned(),
         verdict: match names.len() {
             ..=NAMED => names.join(" / "),
@@ -49,7 +50,7 @@ pub(super) fn page(compared: &Compared) -> Page<'_> {
             .collect(),
         sections: sections.filter(|s| !s.blocks.is_empty()).collect(),
         footer: "Made by idc compare.".to_owned(),
-        ..Page::default()
+        ..Document::default()
     }
 }
 
@@ -72,16 +73,13 @@ fn over_one_another<'a>(compared: &'a Compared, names: &[String]) -> Vec<Block<'
             let series: Vec<Series<'_>> =
                 compared.drawn.iter().enumerate().filter_map(line).collect();
             if !series.is_empty() {
-                blocks.push(Block::Chart(Chart {
-                    panel: Panel {
-                        title: format!("{}: {words}", group.title),
-                        vertical_label: group.label.to_owned(),
-                        horizontal: Horizontal::Time,
-                        series,
-                        ..Panel::default()
-                    },
+                blocks.push(Block::Panel(Panel {
+                    title: format!("{}: {words}", group.title),
+                    vertical_label: group.label.to_owned(),
+                    horizontal: Horizontal::Time,
+                    series,
                     group: "runs".to_owned(),
-                    ..Chart::default()
+                    ..Panel::default()
                 }));
             }
         }
@@ -89,7 +87,7 @@ fn over_one_another<'a>(compared: &'a Compared, names: &[String]) -> Vec<Block<'
     blocks
 }
 
-fn table(compared: &Compared, names: &[String]) -> PageTable {
+fn table(compared: &Compared, names: &[String]) -> Table {
     let mut columns = vec!["number".to_owned(), "unit".to_owned()];
     for (place, name) in names.iter().enumerate() {
         columns.push(format!("#{name}"));
@@ -99,17 +97,14 @@ fn table(compared: &Compared, names: &[String]) -> PageTable {
     }
     let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
     let row = |row: &Row| {
-        let mut cells = vec![
-            TableCell::from(row.name.clone()),
-            TableCell::from(row.unit.clone()),
-        ];
+        let mut cells = vec![Cell::from(row.name.clone()), Cell::from(row.unit.clone())];
         for place in 0..row.values.len() {
-            cells.push(TableCell::from(row.shown(place)));
+            cells.push(Cell::from(row.shown(place)));
             if place > 0 {
-                cells.push(TableCell::from(row.change(place).unwrap_or_default()));
+                cells.push(Cell::from(row.change(place).unwrap_or_default()));
             }
         }
         cells
     };
-    PageTable::new("", &columns, compared.rows.iter().map(row).collect())
+    Table::new("", &columns, compared.rows.iter().map(row).collect())
 }

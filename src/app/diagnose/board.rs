@@ -9,7 +9,7 @@ use crate::diagnosis::difference::comparison::{Balance, Compared, ComparedChanne
 use crate::diagnosis::difference::mismatch::Mismatch;
 use crate::diagnosis::formula::unlisted::report::{ShapeRow, UnlistedReport};
 use crate::diagnosis::recordings::recorded::COLUMNS;
-use crate::page::kept;
+use crate::document::kept;
 use crate::plant::CHANNELS;
 use crate::scene::Scene;
 use crate::scene::board::{Board, BoardLine, BoardRole, Cloud, CloudGroup, Lane, Sheet, SheetPlot};

@@ -3,7 +3,8 @@
 use super::super::error::AppError;
 use crate::diagnosis::answer::finding::Diagnosis;
 use crate::diagnosis::answer::words::{CHANNEL_UNITS, CHANNEL_WORDS};
-use crate::figure::{Figure, Horizontal, Panel, Role, Series, Stroke, svg};
+use crate::document::{Figure, Horizontal, Panel, Role, Series, Stroke};
+use crate::figure::svg;
 
 /// Recordings drawn at most.
 const MOST: usize = 4;

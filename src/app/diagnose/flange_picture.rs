@@ -3,7 +3,8 @@
 use super::super::error::AppError;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::difference::comparison::{Compared, Comparison};
-use crate::figure::{Figure, Horizontal, Panel, Role, Series, Stroke, svg};
+use crate::document::{Figure, Horizontal, Panel, Role, Series, Stroke};
+use crate::figure::svg;
 
 /// Runs drawn at most: the one that it never saw first.
 const MOST: usize = 4;

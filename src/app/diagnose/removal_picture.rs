@@ -2,7 +2,8 @@
 
 use super::super::error::AppError;
 use crate::diagnosis::removal::{RemovalDiagnosis, TableLaw, TableRow};
-use crate::figure::{Figure, Horizontal, Panel, Role, Series, Stroke, svg};
+use crate::document::{Figure, Horizontal, Panel, Role, Series, Stroke};
+use crate::figure::svg;
 
 /// The picture of a table of runs with a feed, or with a grinding time.
 pub(super) fn picture(diagnosis: &RemovalDiagnosis, is_feed: bool) -> Result<String, AppError> {

@@ -5,7 +5,8 @@ use crate::diagnosis::answer::finding::Diagnosis;
 use crate::diagnosis::answer::words::odds;
 use crate::diagnosis::formula::unlisted::words::{self, DisplayQuantity};
 use crate::diagnosis::formula::unlisted::{Shape, ShapePoint};
-use crate::figure::{Figure, Horizontal, Panel, Role, Series, Stroke, svg};
+use crate::document::{Figure, Horizontal, Panel, Role, Series, Stroke};
+use crate::figure::svg;
 use crate::plant::Latent;
 
 /// Half widths beyond so many times what the term moves through are not drawn: nothing was recorded there [1].

@@ -6,10 +6,8 @@ use glam::DVec3;
 
 use super::super::space::{MILLIMETRES, body, floats};
 use super::part::{EYE, MOST_TRIANGLES, name_of, place, scene_of, short};
+use crate::document::{Block, Cell, Document, Drawing, DrawnLine, DrawnView, Section, Table, html};
 use crate::drawing::{self, Numbered};
-use crate::page::{
-    Block, Drawing, DrawnLine, DrawnView, Page, PageSection, PageTable, TableCell, html,
-};
 use crate::quantity::counted;
 use crate::workpiece::{EdgeFault, EdgeFlaw, MeshFault, PartFile};
 
@@ -49,7 +47,7 @@ pub(super) fn page(
     );
     let mut blocks = vec![
         Block::InSpace(&drawn, vec![picture]),
-        Block::PageTable(table(shown)),
+        Block::Table(table(shown)),
     ];
     if shown.len() < edges.len() {
         blocks.push(Block::Hint(format!(
@@ -58,7 +56,7 @@ pub(super) fn page(
             edges.len()
         )));
     }
-    html(&Page {
+    html(&Document {
         title: format!("Faulty edges of {}", name_of(mesh)),
         verdict: format!(
             "The surface is not closed: {}.",
@@ -68,9 +66,9 @@ pub(super) fn page(
             format!("{} {fault}.", name_of(mesh)),
             "Each edge of a closed surface has just two triangles, both counter-clockwise seen from outside. Mend the part where it was drawn, or with MeshLab (Filters, Cleaning and Repairing), and export it again.".to_owned(),
         ],
-        sections: vec![PageSection::new("Part and faulty edges", blocks)],
+        sections: vec![Section::new("Part and faulty edges", blocks)],
         footer: "Made by idc edges.".to_owned(),
-        ..Page::default()
+        ..Document::default()
     })
 }
 
@@ -113,7 +111,7 @@ fn line((number, edge): (usize, &EdgeFault<DVec3>)) -> DrawnLine {
     }
 }
 
-fn table(edges: &[EdgeFault<DVec3>]) -> PageTable {
+fn table(edges: &[EdgeFault<DVec3>]) -> Table {
     let columns = ["id", "fault", "#length, mm", "start, mm", "end, mm"];
     let row = |(number, edge): (usize, &EdgeFault<DVec3>)| {
         let [from, to] = edge.ends;
@@ -124,8 +122,8 @@ fn table(edges: &[EdgeFault<DVec3>]) -> PageTable {
             place(from),
             place(to),
         ];
-        cells.map(TableCell::from).to_vec()
+        cells.map(Cell::from).to_vec()
     };
     let rows = edges.iter().enumerate().map(row).collect();
-    PageTable::new("Faulty edges, in the part's frame.", &columns, rows)
+    Table::new("Faulty edges, in the part's frame.", &columns, rows)
 }

@@ -9,10 +9,8 @@ use super::super::space::{MILLIMETRES, body, floats};
 use super::part::{
     EYE, MOST_TRIANGLES, MeshUnit, convexity, kind, name_of, place, scene_of, short,
 };
+use crate::document::{Block, Cell, Document, Drawing, DrawnLine, DrawnView, Section, Table, html};
 use crate::drawing::{self, Numbered};
-use crate::page::{
-    Block, Drawing, DrawnLine, DrawnView, Page, PageSection, PageTable, TableCell, html,
-};
 use crate::quantity::counted;
 use crate::workpiece::{Convexity, CurveKind, EdgeCurve, EdgeList, EdgeSearch, TriangleMesh};
 
@@ -77,8 +75,8 @@ pub(super) fn page(source: Source<'_>, mesh: &TriangleMesh, list: &EdgeList) -> 
                 .iter()
                 .map(|note| Block::Hint(format!("{note}."))),
         )
-        .chain([Block::PageTable(table(list))]);
-    html(&Page {
+        .chain([Block::Table(table(list))]);
+    html(&Document {
         title: format!("Edges of {}", name_of(file)),
         verdict: verdict(mesh, list),
         lead: vec![format!(
@@ -86,9 +84,9 @@ pub(super) fn page(source: Source<'_>, mesh: &TriangleMesh, list: &EdgeList) -> 
             short(180.0 - sharp_angle),
             unit.name()
         )],
-        sections: vec![PageSection::new("Part and edges", blocks.collect())],
+        sections: vec![Section::new("Part and edges", blocks.collect())],
         footer: "Made by idc edges.".to_owned(),
-        ..Page::default()
+        ..Document::default()
     })
 }
 
@@ -254,7 +252,7 @@ fn to_paste((mesh, unit, sharp_angle): Source<'_>, curve: &EdgeCurve) -> String 
 }
 
 /// All curves with their numbers.
-fn table(list: &EdgeList) -> PageTable {
+fn table(list: &EdgeList) -> Table {
     let columns = [
         "id",
         "form",
@@ -278,11 +276,11 @@ fn table(list: &EdgeList) -> PageTable {
             if curve.closed { "yes" } else { "no" }.to_owned(),
             curve.corners.len().to_string(),
         ];
-        cells.map(TableCell::from).to_vec()
+        cells.map(Cell::from).to_vec()
     };
     let curves = list.edges.iter().chain(&list.loops);
     let caption = "Edges, then outlines of faces (loops), in the part's frame. Angle: between the two faces, in the part at a convex edge and in the open at a concave one. Convex ones can be ridden.";
-    PageTable::new(caption, &columns, curves.map(row).collect())
+    Table::new(caption, &columns, curves.map(row).collect())
 }
 
 fn length(curve: &EdgeCurve) -> String {

@@ -3,8 +3,9 @@
 use super::super::error::AppError;
 use super::page::title;
 use crate::demonstration::{self as scene, Signal, Stage};
+use crate::document::{Figure, Panel, Role, Series, Stroke};
 use crate::effects::Effect;
-use crate::figure::{Figure, Panel, Role, Series, Stroke, svg};
+use crate::figure::svg;
 
 /// Largest distance of a line with fewer points from the one with all, as a share of its panel's height: a third of a pixel.
 const BESIDE_LINE: f64 = 2e-3;

@@ -3,9 +3,12 @@
 use super::super::error::AppError;
 use super::super::report::sources;
 use super::table::TABLE;
-use crate::figure::{Figure, Horizontal, Marker, Panel, Role, Series, Stroke, svg};
+use crate::document::{
+    Block, Cell, Document, Fact, Figure, Horizontal, Marker, Panel, Role, Section, Series, Stroke,
+    Table, Tone, html,
+};
+use crate::figure::svg;
 use crate::fleet::{DeviceFound, Found, NumberChanged, NumberSeries, date_of_day, words};
-use crate::page::{Block, Fact, Page, PageSection, PageTable, TableCell, Tone, html};
 use crate::quantity::spoken::{number, spoken};
 
 /// The page of a fleet.
@@ -14,7 +17,7 @@ pub(in super::super) fn page_of(found: &Found) -> Result<String, AppError> {
 }
 
 /// The page.
-fn page(found: &Found) -> Result<Page<'static>, AppError> {
+fn page(found: &Found) -> Result<Document<'static>, AppError> {
     let something = found
         .devices
         .iter()
@@ -38,7 +41,7 @@ fn page(found: &Found) -> Result<Page<'static>, AppError> {
                 .to_owned(),
         ),
     ];
-    Ok(Page {
+    Ok(Document {
         title: "Fleet".to_owned(),
         verdict: found.verdict(),
         tone: if something { Tone::Found } else { Tone::Good },
@@ -53,11 +56,11 @@ fn page(found: &Found) -> Result<Page<'static>, AppError> {
         footer: format!(
             "Made by idc fleet. {TABLE} beside this page has a row for each number of each recording."
         ),
-        ..Page::default()
+        ..Document::default()
     })
 }
 
-fn devices(found: &Found) -> PageSection<'static> {
+fn devices(found: &Found) -> Section<'static> {
     let row = |device: &DeviceFound| {
         let effects: Vec<String> = device.lines();
         let single = device
@@ -65,17 +68,17 @@ fn devices(found: &Found) -> PageSection<'static> {
             .iter()
             .map(|(name, count)| format!("{} ({count})", words(name)));
         vec![
-            TableCell::from(device.name.clone()),
-            TableCell::from(format!("{} to {}", device.first, device.last)),
-            TableCell::from(device.recordings.to_string()),
-            TableCell::Judged(
+            Cell::from(device.name.clone()),
+            Cell::from(format!("{} to {}", device.first, device.last)),
+            Cell::from(device.recordings.to_string()),
+            Cell::Judged(
                 match effects.is_empty() {
                     true => "nothing".to_owned(),
                     false => effects.join("; "),
                 },
                 effects.is_empty(),
             ),
-            TableCell::from(single.collect::<Vec<_>>().join(", ")),
+            Cell::from(single.collect::<Vec<_>>().join(", ")),
         ]
     };
     let columns = [
@@ -86,11 +89,11 @@ fn devices(found: &Found) -> PageSection<'static> {
         "in single recordings",
     ];
     let caption = "Found: in at least three recordings and in half of those since. What single recordings show is no alarm.";
-    let table = PageTable::new(caption, &columns, found.devices.iter().map(row).collect());
-    PageSection::new("Devices", vec![Block::PageTable(table)])
+    let table = Table::new(caption, &columns, found.devices.iter().map(row).collect());
+    Section::new("Devices", vec![Block::Table(table)])
 }
 
-fn changed(found: &Found) -> Option<PageSection<'static>> {
+fn changed(found: &Found) -> Option<Section<'static>> {
     let rows = found.devices.iter().flat_map(|device| {
         device.changed.iter().map(move |changed: &NumberChanged| {
             let (name, unit) = spoken(&changed.number);
@@ -109,11 +112,11 @@ fn changed(found: &Found) -> Option<PageSection<'static>> {
                 per_day,
                 format!("{chance:.2}"),
             ]
-            .map(TableCell::from)
+            .map(Cell::from)
             .to_vec()
         })
     });
-    let rows: Vec<Vec<TableCell>> = rows.collect();
+    let rows: Vec<Vec<Cell>> = rows.collect();
     let columns = [
         "device",
         "effect",
@@ -127,16 +130,16 @@ fn changed(found: &Found) -> Option<PageSection<'static>> {
     ];
     let words = "Chance: how often a number that does not change shows as much. All numbers of the fleet together give a false alarm in one of twenty reports.";
     (!rows.is_empty()).then(|| {
-        let table = PageTable::new("", &columns, rows);
-        PageSection::new(
+        let table = Table::new("", &columns, rows);
+        Section::new(
             "Numbers that changed",
-            vec![Block::Hint(words.to_owned()), Block::PageTable(table)],
+            vec![Block::Hint(words.to_owned()), Block::Table(table)],
         )
     })
 }
 
 /// Numbers of effects, and those that changed, over the days.
-fn courses(found: &Found) -> Result<Option<PageSection<'static>>, AppError> {
+fn courses(found: &Found) -> Result<Option<Section<'static>>, AppError> {
     let mut blocks = Vec::new();
     for device in &found.devices {
         let of = |series: &&NumberSeries| {
@@ -153,7 +156,7 @@ fn courses(found: &Found) -> Result<Option<PageSection<'static>>, AppError> {
         let title = String::new();
         blocks.push(Block::Picture(svg(&Figure { title, panels })?));
     }
-    Ok((!blocks.is_empty()).then(|| PageSection::new("Over the days", blocks)))
+    Ok((!blocks.is_empty()).then(|| Section::new("Over the days", blocks)))
 }
 
 fn panel(device: &DeviceFound, series: &NumberSeries) -> Option<Panel<'static>> {
@@ -196,16 +199,11 @@ fn panel(device: &DeviceFound, series: &NumberSeries) -> Option<Panel<'static>> 
     })
 }
 
-fn listed(
-    title: &str,
-    columns: [&str; 2],
-    pairs: &[(String, String)],
-) -> Option<PageSection<'static>> {
-    let row = |(one, other): &(String, String)| {
-        vec![TableCell::from(one.clone()), TableCell::from(other.clone())]
-    };
+fn listed(title: &str, columns: [&str; 2], pairs: &[(String, String)]) -> Option<Section<'static>> {
+    let row =
+        |(one, other): &(String, String)| vec![Cell::from(one.clone()), Cell::from(other.clone())];
     (!pairs.is_empty()).then(|| {
-        let table = PageTable::new("", &columns, pairs.iter().map(row).collect());
-        PageSection::new(title, vec![Block::PageTable(table)])
+        let table = Table::new("", &columns, pairs.iter().map(row).collect());
+        Section::new(title, vec![Block::Table(table)])
     })
 }

@@ -6,8 +6,7 @@ use crate::diagnosis::difference::comparison::{Balance, Compared, ComparedChanne
 use crate::diagnosis::difference::mismatch::Mismatch;
 use crate::diagnosis::formula::unlisted::report::{ShapeRow, UnlistedReport};
 use crate::diagnosis::recordings::recorded::COLUMNS;
-use crate::figure::{Band, Horizontal, Panel, Role, Series, Stroke};
-use crate::page::Chart;
+use crate::document::{Band, Horizontal, Panel, Role, Series, Stroke};
 use crate::stats::{NORMAL_95, quantiles};
 
 /// Origin subtracted from the times of a recording [s]: nothing, unless they are those of a clock, which single precision cannot tell apart.
@@ -34,7 +33,7 @@ pub(super) fn channel<'a>(
     answer: &Answer,
     recording: &'a Compared,
     channel: &'a ComparedChannel,
-) -> [Chart<'a>; 2] {
+) -> [Panel<'a>; 2] {
     let index = channel.channel as usize;
     let (unit, factor) = CHANNEL_UNITS[index];
     let start = origin(recording);
@@ -49,15 +48,13 @@ pub(super) fn channel<'a>(
     let spans: Vec<[f64; 2]> = spans
         .map(|m| [from_start(m.start_s), from_start(m.end_s)])
         .collect();
-    let chart = |title: String, series, bands| Chart {
-        panel: Panel {
-            title,
-            vertical_label: format!("{} [{unit}]", CHANNEL_WORDS[index]),
-            horizontal: time_axis(start),
-            series,
-            bands,
-            markers: Vec::new(),
-        },
+    let chart = |title: String, series, bands| Panel {
+        title,
+        vertical_label: format!("{} [{unit}]", CHANNEL_WORDS[index]),
+        horizontal: time_axis(start),
+        series,
+        bands,
+        markers: Vec::new(),
         spans: spans.clone(),
         group: recording.name.clone(),
         within: None,
@@ -153,7 +150,7 @@ pub(in crate::app) fn lacking(balance: &Balance) -> &'static str {
 }
 
 /// Residual of a link against the variable that explains it, before and after.
-pub(super) fn balance<'a>(balance: &Balance) -> Chart<'a> {
+pub(super) fn balance<'a>(balance: &Balance) -> Panel<'a> {
     let (unit, factor) = CHANNEL_UNITS[balance.channel as usize];
     let (words, of, scale) = variable(&balance.variable);
     let lacking = lacking(balance);
@@ -164,24 +161,21 @@ pub(super) fn balance<'a>(balance: &Balance) -> Chart<'a> {
         let values: Vec<f64> = known.iter().map(|i| values[*i] * factor).collect();
         Series::new(label, places.clone(), values, role, Stroke::Points)
     };
-    Chart {
-        panel: Panel {
-            title: format!("{}: what it lacks", capital(lacking)),
-            vertical_label: format!("lacking [{unit}]"),
-            horizontal: Horizontal::Quantity(format!("{words} [{of}]")),
-            series: vec![
-                cloud(&balance.before, "as believed", Role::Command),
-                cloud(&balance.after, "improved", Role::Estimate),
-            ],
-            ..Panel::default()
-        },
+    Panel {
+        title: format!("{}: what it lacks", capital(lacking)),
+        vertical_label: format!("lacking [{unit}]"),
+        horizontal: Horizontal::Quantity(format!("{words} [{of}]")),
+        series: vec![
+            cloud(&balance.before, "as believed", Role::Command),
+            cloud(&balance.after, "improved", Role::Estimate),
+        ],
         within: most_of(&balance.before).map(|ends| ends.map(|end| factor * end)),
-        ..Chart::default()
+        ..Panel::default()
     }
 }
 
 /// Physics without a name against its variable.
-pub(super) fn unlisted<'a>(report: &UnlistedReport) -> Chart<'a> {
+pub(super) fn unlisted<'a>(report: &UnlistedReport) -> Panel<'a> {
     let (_, at_unit, at) = spoken(&format!("x_{}", report.at_unit));
     let (_, unit, of) = spoken(&format!("x_{}", report.value_unit));
     // Where nothing was recorded the interval is wider than all that the term does: not drawn.
@@ -211,14 +205,11 @@ pub(super) fn unlisted<'a>(report: &UnlistedReport) -> Chart<'a> {
         Some(_) => "time within the period".to_owned(),
         None => variable(&report.variable).0.replace('_', " "),
     };
-    Chart {
-        panel: Panel {
-            title: format!("The term: {}", report.port.replace('_', " ")),
-            vertical_label: format!("{} [{unit}]", report.port.replace('_', " ")),
-            horizontal: Horizontal::Quantity(format!("{over} [{at_unit}]")),
-            series: bands.chain([term]).collect(),
-            ..Panel::default()
-        },
-        ..Chart::default()
+    Panel {
+        title: format!("The term: {}", report.port.replace('_', " ")),
+        vertical_label: format!("{} [{unit}]", report.port.replace('_', " ")),
+        horizontal: Horizontal::Quantity(format!("{over} [{at_unit}]")),
+        series: bands.chain([term]).collect(),
+        ..Panel::default()
     }
 }

@@ -6,8 +6,8 @@ use super::super::files::{DESIGN, OVERRIDE};
 use super::judged::judged;
 use super::provenance::provenance_of;
 use crate::diagnosis::answer::words::capital;
+use crate::document::{Block, Cell, Document, Fact, Section, Table, Tone};
 use crate::metrics::labels;
-use crate::page::{Block, Fact, Page, PageSection, PageTable, TableCell, Tone};
 use crate::quantity::spoken::{number, spoken};
 use crate::quantity::{UNKNOWN, change, optional, with_unit};
 
@@ -15,8 +15,8 @@ use crate::quantity::{UNKNOWN, change, optional, with_unit};
 pub(super) fn page<'a>(
     document: &Value,
     front: Option<&str>,
-    robustness: Option<PageSection<'a>>,
-) -> Page<'a> {
+    robustness: Option<Section<'a>>,
+) -> Document<'a> {
     let sections = [
         Some(chosen(document)),
         front.map(|svg| trade_off(document, svg)),
@@ -28,14 +28,14 @@ pub(super) fn page<'a>(
         judged(document, DESIGN),
         Some(provenance_of(document)),
     ];
-    Page {
+    Document {
         title: document["title"].as_str().unwrap_or("A study").to_owned(),
         verdict: verdict(document),
         tone: Tone::Found,
         facts: facts(document),
         sections: sections.into_iter().flatten().collect(),
         footer: "Made by idc. override.toml beside this page holds the chosen design; a scenario takes it as it stands.".to_owned(),
-        ..Page::default()
+        ..Document::default()
     }
 }
 
@@ -143,7 +143,7 @@ fn facts(document: &Value) -> Vec<Fact> {
 }
 
 /// The chosen design beside the start, within what was varied.
-fn chosen<'a>(document: &Value) -> PageSection<'a> {
+fn chosen<'a>(document: &Value) -> Section<'a> {
     let bound = |key: &str| list(&document["active_bounds"]).find(|b| b["variable"] == key);
     let varied = |key: &str| list(&document["variables"]).find(|v| v["key"] == key);
     let row = |(key, value): (&String, &Value)| {
@@ -167,22 +167,22 @@ fn chosen<'a>(document: &Value) -> PageSection<'a> {
             _ => "at its upper end".to_owned(),
         });
         let drawn = match (ends, chosen) {
-            (Some([min, max]), Some(at)) => TableCell::Interval([min, at, at, at, max]),
-            _ => TableCell::from(""),
+            (Some([min, max]), Some(at)) => Cell::Interval([min, at, at, at, max]),
+            _ => Cell::from(""),
         };
         vec![
-            TableCell::from(name),
-            TableCell::from(unit),
-            TableCell::from(start.map_or(UNKNOWN.to_owned(), number)),
-            TableCell::from(chosen.map_or(UNKNOWN.to_owned(), number)),
-            TableCell::from(range),
+            Cell::from(name),
+            Cell::from(unit),
+            Cell::from(start.map_or(UNKNOWN.to_owned(), number)),
+            Cell::from(chosen.map_or(UNKNOWN.to_owned(), number)),
+            Cell::from(range),
             drawn,
-            TableCell::from(remark),
+            Cell::from(remark),
         ]
     };
     let design = document["chosen"]["design"].as_object();
-    let rows: Vec<Vec<TableCell>> = design.into_iter().flatten().map(row).collect();
-    let table = PageTable::new(
+    let rows: Vec<Vec<Cell>> = design.into_iter().flatten().map(row).collect();
+    let table = Table::new(
         "What was varied; the mark stands where the chosen value lies between its bounds.",
         &["variable", "unit", "#start", "#chosen", "bounds", "", ""],
         rows,
@@ -192,11 +192,11 @@ fn chosen<'a>(document: &Value) -> PageSection<'a> {
         (DESIGN, "all of this result, for programs"),
     ];
     let files = files.map(|(name, words)| Block::File(name.to_owned(), words.to_owned()));
-    let blocks = [Block::PageTable(table)].into_iter().chain(files);
-    PageSection::new("Chosen design", blocks.collect())
+    let blocks = [Block::Table(table)].into_iter().chain(files);
+    Section::new("Chosen design", blocks.collect())
 }
 
-fn trade_off<'a>(document: &Value, svg: &str) -> PageSection<'a> {
+fn trade_off<'a>(document: &Value, svg: &str) -> Section<'a> {
     let objectives = &document["objectives"];
     let [minimised, second] = ["minimised", "trade_off"].map(|key| text(&objectives[key]));
     let designs: Vec<&Value> = list(&document["front"]).collect();
@@ -222,16 +222,16 @@ fn trade_off<'a>(document: &Value, svg: &str) -> PageSection<'a> {
             let value = point["design"][key.as_str()].as_f64();
             value.map_or(UNKNOWN.to_owned(), number)
         });
-        own.into_iter().chain(values).map(TableCell::from).collect()
+        own.into_iter().chain(values).map(Cell::from).collect()
     };
     let caption = "Designs of which none is better in both.";
-    let table = PageTable::new(caption, &columns, designs.iter().map(row).collect());
+    let table = Table::new(caption, &columns, designs.iter().map(row).collect());
     let words = format!("The {} designs of the front", designs.len());
-    PageSection::new(
+    Section::new(
         "Trade-off",
         vec![
             Block::Picture(bare(svg).to_owned()),
-            Block::Folded(words, vec![Block::PageTable(table)]),
+            Block::Folded(words, vec![Block::Table(table)]),
         ],
     )
 }
@@ -242,7 +242,7 @@ pub(super) fn bare(svg: &str) -> &str {
 }
 
 /// Bounds and limits that keep the objective from being lower.
-fn binding<'a>(document: &Value) -> PageSection<'a> {
+fn binding<'a>(document: &Value) -> Section<'a> {
     let (objective, _) = named(text(&document["objectives"]["minimised"]));
     let tried = |key: &Value| {
         let mut steps = list(&document["sensitivities"]);
@@ -278,20 +278,20 @@ fn binding<'a>(document: &Value) -> PageSection<'a> {
         ]
     });
     let rows = bounds.chain(limits);
-    let rows: Vec<Vec<TableCell>> = rows.map(|row| row.map(TableCell::from).to_vec()).collect();
+    let rows: Vec<Vec<Cell>> = rows.map(|row| row.map(Cell::from).to_vec()).collect();
     let block = match rows.is_empty() {
         true => Block::Paragraph("Nothing: neither a bound nor a limit.".to_owned()),
         false => {
             let effect = format!("#{objective}");
             let columns = ["what binds", "kind", "with more room", &effect];
             let caption = "What more room would do to what was minimised.";
-            Block::PageTable(PageTable::new(caption, &columns, rows))
+            Block::Table(Table::new(caption, &columns, rows))
         }
     };
-    PageSection::new("What binds", vec![block])
+    Section::new("What binds", vec![block])
 }
 
-fn limits<'a>(document: &Value) -> Option<PageSection<'a>> {
+fn limits<'a>(document: &Value) -> Option<Section<'a>> {
     let before = list(&document["start"]["limits"]);
     let after = list(&document["chosen"]["limits"]);
     let row = |(before, after): (&Value, &Value)| {
@@ -307,23 +307,23 @@ fn limits<'a>(document: &Value) -> Option<PageSection<'a>> {
             false => "broken",
         };
         vec![
-            TableCell::from(limit_words(text(&after["limit"]))),
-            TableCell::from(quantity(key, &before["value"])),
-            TableCell::Judged(was.to_owned(), before["kept"] == true),
-            TableCell::from(quantity(key, &after["value"])),
-            TableCell::Judged(state.to_owned(), kept),
+            Cell::from(limit_words(text(&after["limit"]))),
+            Cell::from(quantity(key, &before["value"])),
+            Cell::Judged(was.to_owned(), before["kept"] == true),
+            Cell::from(quantity(key, &after["value"])),
+            Cell::Judged(state.to_owned(), kept),
         ]
     };
-    let rows: Vec<Vec<TableCell>> = before.zip(after).map(row).collect();
+    let rows: Vec<Vec<Cell>> = before.zip(after).map(row).collect();
     let columns = ["limit", "#start", "", "#chosen", ""];
     let caption = "The worst of the scenarios.";
     (!rows.is_empty()).then(|| {
-        let table = PageTable::new(caption, &columns, rows);
-        PageSection::new("Limits", vec![Block::PageTable(table)])
+        let table = Table::new(caption, &columns, rows);
+        Section::new("Limits", vec![Block::Table(table)])
     })
 }
 
-fn steps<'a>(document: &Value) -> PageSection<'a> {
+fn steps<'a>(document: &Value) -> Section<'a> {
     let (objective, _) = named(text(&document["objectives"]["minimised"]));
     let row = |step: &Value| {
         let (name, unit) = spoken(text(&step["variable"]));
@@ -335,27 +335,27 @@ fn steps<'a>(document: &Value) -> PageSection<'a> {
             _ => String::new(),
         };
         vec![
-            TableCell::from(name),
-            TableCell::from(changed(&step["change_percent"])),
-            TableCell::from(step["value"].as_f64().map_or(String::new(), number)),
-            TableCell::from(unit),
-            TableCell::from(changed(&step["objective_change_percent"])),
-            TableCell::from(remark),
+            Cell::from(name),
+            Cell::from(changed(&step["change_percent"])),
+            Cell::from(step["value"].as_f64().map_or(String::new(), number)),
+            Cell::from(unit),
+            Cell::from(changed(&step["objective_change_percent"])),
+            Cell::from(remark),
         ]
     };
-    let rows: Vec<Vec<TableCell>> = list(&document["sensitivities"]).map(row).collect();
+    let rows: Vec<Vec<Cell>> = list(&document["sensitivities"]).map(row).collect();
     let effect = format!("#{objective}");
     let columns = ["variable", "#changed by", "#to", "unit", &effect, "remark"];
-    let table = PageTable::new(
+    let table = Table::new(
         "Each variable alone, a tenth more and less, or to the next entry of its catalogue.",
         &columns,
         rows,
     );
-    PageSection::new("One variable alone", vec![Block::PageTable(table)])
+    Section::new("One variable alone", vec![Block::Table(table)])
 }
 
 /// Scenarios, objectives, and what each scenario gave.
-fn measured_by<'a>(document: &Value) -> PageSection<'a> {
+fn measured_by<'a>(document: &Value) -> Section<'a> {
     let objectives = &document["objectives"];
     let mut keys: Vec<&str> = ["minimised", "trade_off"]
         .into_iter()
@@ -381,16 +381,16 @@ fn measured_by<'a>(document: &Value) -> PageSection<'a> {
             let percent = percent.map(|(to, from)| 100.0 * (to - from) / from.abs());
             let percent = percent.filter(|percent| percent.is_finite());
             Some(vec![
-                TableCell::from(text(&scenario["name"])),
-                TableCell::from(named(key).0),
-                TableCell::from(quantity(key, start)),
-                TableCell::from(quantity(key, chosen)),
-                TableCell::from(percent.map_or(String::new(), change)),
+                Cell::from(text(&scenario["name"])),
+                Cell::from(named(key).0),
+                Cell::from(quantity(key, start)),
+                Cell::from(quantity(key, chosen)),
+                Cell::from(percent.map_or(String::new(), change)),
             ])
         })
     });
     let columns = ["scenario", "number", "#start", "#chosen", "#change"];
-    let table = PageTable::new(
+    let table = Table::new(
         "What the study names, in each scenario.",
         &columns,
         rows.collect(),
@@ -404,27 +404,27 @@ fn measured_by<'a>(document: &Value) -> PageSection<'a> {
         },
         files.join(", ")
     );
-    let mut blocks = vec![Block::Paragraph(simulated), Block::PageTable(table)];
+    let mut blocks = vec![Block::Paragraph(simulated), Block::Table(table)];
     let reasons = document["infeasible"].as_object().into_iter().flatten();
-    let reasons: Vec<Vec<TableCell>> = reasons
+    let reasons: Vec<Vec<Cell>> = reasons
         .map(|(reason, count)| {
             let reason = match reason.contains(' ') && reason.contains('_') {
                 true => limit_words(reason),
                 false => reason.clone(),
             };
-            vec![TableCell::from(reason), TableCell::from(count.to_string())]
+            vec![Cell::from(reason), Cell::from(count.to_string())]
         })
         .collect();
     if !reasons.is_empty() {
         let caption =
             "Designs that were not feasible, by the limit most exceeded or by the reason.";
-        let table = PageTable::new(caption, &["reason", "#designs"], reasons);
+        let table = Table::new(caption, &["reason", "#designs"], reasons);
         blocks.push(Block::Folded(
             "Designs that were not feasible".to_owned(),
-            vec![Block::PageTable(table)],
+            vec![Block::Table(table)],
         ));
     }
-    PageSection::new("What it was measured by", blocks)
+    Section::new("What it was measured by", blocks)
 }
 
 #[cfg(test)]

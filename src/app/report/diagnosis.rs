@@ -13,9 +13,9 @@ use crate::diagnosis::answer::words::{
 use crate::diagnosis::answer::{Answer, FoundEffect, Verdict};
 use crate::diagnosis::difference::comparison::{Compared, Comparison};
 use crate::diagnosis::recordings::recorded::COLUMNS;
+use crate::document::{Block, Cell, Document, Fact, Section, Strip, Table, Tone};
 use crate::effects::UNLISTED;
 use crate::effects::meaning;
-use crate::page::{Block, Fact, Page, PageSection, PageTable, Strip, TableCell, Tone};
 use crate::plant::CHANNELS;
 use crate::quantity::significant;
 
@@ -33,7 +33,7 @@ const FOUND: [SectionKind; 6] = [
 ];
 
 /// The page.
-pub(super) fn page<'a>(answer: &Answer, comparison: &'a Comparison) -> Page<'a> {
+pub(super) fn page<'a>(answer: &Answer, comparison: &'a Comparison) -> Document<'a> {
     let details = &answer.details;
     let headline = details.account.headline.replace('_', " ");
     let sections = [
@@ -49,7 +49,7 @@ pub(super) fn page<'a>(answer: &Answer, comparison: &'a Comparison) -> Page<'a> 
         account(answer),
     ];
     let sections = sections.into_iter().flatten();
-    Page {
+    Document {
         title: format!("Diagnosis of {}", details.case),
         verdict: format!("{}.", capital(&headline)),
         tone: match answer.verdict {
@@ -64,10 +64,10 @@ pub(super) fn page<'a>(answer: &Answer, comparison: &'a Comparison) -> Page<'a> 
     }
 }
 
-fn next_experiment<'a>(answer: &Answer) -> Option<PageSection<'a>> {
+fn next_experiment<'a>(answer: &Answer) -> Option<Section<'a>> {
     let kind = SectionKind::NextExperiment;
     let blocks: Vec<Block<'a>> = told(answer, &[kind]).collect();
-    (!blocks.is_empty()).then(|| PageSection::new(kind.title(), blocks))
+    (!blocks.is_empty()).then(|| Section::new(kind.title(), blocks))
 }
 
 /// Meaning of each effect, in words.
@@ -148,7 +148,7 @@ fn facts(answer: &Answer) -> Vec<Fact> {
     facts
 }
 
-fn what_is_missing<'a>(answer: &Answer) -> Option<PageSection<'a>> {
+fn what_is_missing<'a>(answer: &Answer) -> Option<Section<'a>> {
     let mut blocks = Vec::new();
     let found = answer
         .effects
@@ -164,33 +164,33 @@ fn what_is_missing<'a>(answer: &Answer) -> Option<PageSection<'a>> {
     let widest = widest.clamp(1e-6, 1.0);
     let rows = known.iter().map(|(effect, (name, estimate))| {
         let (words, unit, factor) = effect.spoken(name);
-        let number = |v: f64| TableCell::from(significant(factor * v, 4));
+        let number = |v: f64| Cell::from(significant(factor * v, 4));
         let [low, high] = relative(estimate);
         // Which joint is known or not; it has no interval.
         let certain = estimate.low == estimate.high;
-        let unless_certain = |cell: TableCell| if certain { TableCell::from("") } else { cell };
+        let unless_certain = |cell: Cell| if certain { Cell::from("") } else { cell };
         vec![
-            TableCell::from(effect.name.replace('_', " ")),
-            TableCell::from(effect.subsystem.replace('_', " ")),
-            TableCell::from(percent(effect.confidence)),
-            TableCell::from(words),
+            Cell::from(effect.name.replace('_', " ")),
+            Cell::from(effect.subsystem.replace('_', " ")),
+            Cell::from(percent(effect.confidence)),
+            Cell::from(words),
             match certain && estimate.value.fract() == 0.0 {
-                true => TableCell::from(format!("{}", estimate.value)),
+                true => Cell::from(format!("{}", estimate.value)),
                 false => number(estimate.value),
             },
             unless_certain(number(estimate.low)),
             unless_certain(number(estimate.high)),
-            TableCell::from(match estimate.at_limit {
+            Cell::from(match estimate.at_limit {
                 Some(_) => format!("{unit}, at the end of its range"),
                 None => unit,
             }),
             match low.is_finite() && high.is_finite() {
-                true => unless_certain(TableCell::Interval([-widest, low, 0.0, high, widest])),
-                false => TableCell::from(""),
+                true => unless_certain(Cell::Interval([-widest, low, 0.0, high, widest])),
+                false => Cell::from(""),
             },
         ]
     });
-    let rows: Vec<Vec<TableCell>> = rows.collect();
+    let rows: Vec<Vec<Cell>> = rows.collect();
     if !rows.is_empty() {
         let scale = format!("{} %", significant(100.0 * widest, 2));
         let columns = [
@@ -207,19 +207,19 @@ fn what_is_missing<'a>(answer: &Answer) -> Option<PageSection<'a>> {
         let caption = format!(
             "Intervals are those of 95 %; drawn relative to the value, from -{scale} to +{scale}."
         );
-        blocks.push(Block::PageTable(PageTable::new(&caption, &columns, rows)));
+        blocks.push(Block::Table(Table::new(&caption, &columns, rows)));
     }
     for effect in &answer.effects {
         if let Some(report) = &effect.unlisted {
-            blocks.push(Block::Chart(unlisted(report)));
+            blocks.push(Block::Panel(unlisted(report)));
         }
     }
     blocks.extend(told(answer, &FOUND));
-    (!blocks.is_empty()).then(|| PageSection::new("What is missing", blocks))
+    (!blocks.is_empty()).then(|| Section::new("What is missing", blocks))
 }
 
 /// Strips of the times in which the effects show.
-fn where_it_shows<'a>(answer: &Answer, comparison: &Comparison) -> Option<PageSection<'a>> {
+fn where_it_shows<'a>(answer: &Answer, comparison: &Comparison) -> Option<Section<'a>> {
     let mut blocks: Vec<Block<'a>> =
         told(answer, &[SectionKind::Mismatch, SectionKind::Link]).collect();
     let mut subsystems: Vec<&str> = Vec::new();
@@ -262,16 +262,16 @@ fn where_it_shows<'a>(answer: &Answer, comparison: &Comparison) -> Option<PageSe
         };
         blocks.push(Block::Hint(hint));
     }
-    (!blocks.is_empty()).then(|| PageSection::new("Where it shows", blocks))
+    (!blocks.is_empty()).then(|| Section::new("Where it shows", blocks))
 }
 
-fn before_and_after<'a>(answer: &Answer, comparison: &'a Comparison) -> Option<PageSection<'a>> {
+fn before_and_after<'a>(answer: &Answer, comparison: &'a Comparison) -> Option<Section<'a>> {
     let charts = |recording: &'a Compared| -> Vec<Block<'a>> {
         let channels = recording.channels.iter();
         let charts = channels.flat_map(|of| channel(answer, recording, of));
         charts
-            .filter(|chart| !chart.panel.series.is_empty())
-            .map(Block::Chart)
+            .filter(|panel| !panel.series.is_empty())
+            .map(Block::Panel)
             .collect()
     };
     let mut order: Vec<&Compared> = comparison.recordings.iter().collect();
@@ -301,17 +301,17 @@ fn before_and_after<'a>(answer: &Answer, comparison: &'a Comparison) -> Option<P
             blocks.push(Block::Folded(title, charts(recording)));
         }
     }
-    (blocks.len() > 1).then(|| PageSection::new("Before and after", blocks))
+    (blocks.len() > 1).then(|| Section::new("Before and after", blocks))
 }
 
-fn balances<'a>(comparison: &Comparison) -> Option<PageSection<'a>> {
+fn balances<'a>(comparison: &Comparison) -> Option<Section<'a>> {
     let mut blocks = vec![Block::Hint("What closes each balance along the measured motion, against the variable that says most about it: a law shows as a curve, what is explained lies flat.".to_owned())];
-    blocks.extend(comparison.balances.iter().map(|b| Block::Chart(balance(b))));
-    (blocks.len() > 1).then(|| PageSection::new("What each link lacks", blocks))
+    blocks.extend(comparison.balances.iter().map(|b| Block::Panel(balance(b))));
+    (blocks.len() > 1).then(|| Section::new("What each link lacks", blocks))
 }
 
 /// All that the account says, folded away.
-fn account<'a>(answer: &Answer) -> Option<PageSection<'a>> {
+fn account<'a>(answer: &Answer) -> Option<Section<'a>> {
     let text = answer.details.account.text(&answer.details.case);
     let mut blocks: Vec<Block<'a>> = told(answer, &[SectionKind::Recordings]).collect();
     for kind in [
@@ -330,5 +330,5 @@ fn account<'a>(answer: &Answer) -> Option<PageSection<'a>> {
         "account.txt".to_owned(),
         vec![Block::Lines(text)],
     ));
-    Some(PageSection::new("The account", blocks))
+    Some(Section::new("The account", blocks))
 }

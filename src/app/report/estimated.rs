@@ -2,21 +2,21 @@
 
 use serde_json::Value;
 
-use crate::page::{Block, PageSection, PageTable, TableCell};
+use crate::document::{Block, Cell, Section, Table};
 use crate::quantity::significant;
 
 /// The part of a page that says so; none where no mass is estimated. `file` is the document's.
-pub(super) fn estimated(document: &Value, file: &str) -> Option<PageSection<'static>> {
+pub(super) fn estimated(document: &Value, file: &str) -> Option<Section<'static>> {
     let estimated = &document["estimated_masses"];
     let number = |row: &Value, key: &str| {
-        TableCell::from(
+        Cell::from(
             row[key]
                 .as_f64()
                 .map_or_else(String::new, |value| significant(value, 2)),
         )
     };
     let text =
-        |row: &Value, key: &str| TableCell::from(row[key].as_str().unwrap_or_default().to_owned());
+        |row: &Value, key: &str| Cell::from(row[key].as_str().unwrap_or_default().to_owned());
     let links = estimated["links"].as_array()?;
     let rows = links.iter().map(|link| {
         vec![
@@ -25,7 +25,7 @@ pub(super) fn estimated(document: &Value, file: &str) -> Option<PageSection<'sta
             text(link, "estimated"),
         ]
     });
-    let masses = PageTable::new(
+    let masses = Table::new(
         "Links of whose weight the URDF file does not say all, with all that is fixed to them.",
         &["link", "#mass [kg]", "estimated"],
         rows.collect(),
@@ -40,7 +40,7 @@ pub(super) fn estimated(document: &Value, file: &str) -> Option<PageSection<'sta
         ]
     });
     let spread = estimated["mass_spread_percent"].as_f64()?;
-    let torques = PageTable::new(
+    let torques = Table::new(
         "Largest torque of each drive along the planned motion [N m].",
         &["joint", "#least", "#as estimated", "#greatest", "#limit"],
         rows.collect(),
@@ -49,12 +49,12 @@ pub(super) fn estimated(document: &Value, file: &str) -> Option<PageSection<'sta
         "These masses are estimated from the shapes of the links and the robot's whole mass. If each of them is off by up to {} %, either way, torques lie between least and greatest. {file} has them as estimated_masses; [[arm.link_masses]] in the scenario takes what is known.",
         significant(spread, 2)
     );
-    Some(PageSection::new(
+    Some(Section::new(
         "Estimated masses",
         vec![
             Block::Paragraph(words),
-            Block::PageTable(masses),
-            Block::PageTable(torques),
+            Block::Table(masses),
+            Block::Table(torques),
         ],
     ))
 }
@@ -73,8 +73,8 @@ mod tests {
         let section = estimated(&document, "summary.json").unwrap();
         let [
             Block::Paragraph(words),
-            Block::PageTable(_),
-            Block::PageTable(torques),
+            Block::Table(_),
+            Block::Table(torques),
         ] = &section.blocks[..]
         else {
             panic!("other blocks");

@@ -4,12 +4,11 @@ use std::borrow::Cow;
 
 use serde_json::Value;
 
-use crate::figure::{Band, Horizontal, Marker, Panel, Role, Series, Stroke};
-use crate::page::{Block, Chart, PageSection};
+use crate::document::{Band, Block, Horizontal, Marker, Panel, Role, Section, Series, Stroke};
 use crate::recording::csv::EdgeProfile;
 
 /// Chamfer's leg with its tolerance, and the burr before and after, along the edge.
-pub(super) fn finished_edge<'a>(profile: &EdgeProfile, document: &Value) -> PageSection<'a> {
+pub(super) fn finished_edge<'a>(profile: &EdgeProfile, document: &Value) -> Section<'a> {
     let millimetres = |values: &[f64]| -> Vec<f64> { values.iter().map(|v| 1e3 * v).collect() };
     let places = millimetres(&profile.place);
     let series = |label: &str, values: &[f64], role, stroke| Series {
@@ -22,18 +21,16 @@ pub(super) fn finished_edge<'a>(profile: &EdgeProfile, document: &Value) -> Page
     };
     let ends = ends(&places, document["summary"]["ends_length_mm"].as_f64());
     let chart = |title: &str, label: &str, series, bands, within| {
-        Block::Chart(Chart {
+        Block::Panel(Panel {
             within,
-            panel: Panel {
-                title: title.to_owned(),
-                vertical_label: label.to_owned(),
-                horizontal: Horizontal::Quantity("length along the edge [mm]".to_owned()),
-                series,
-                bands,
-                markers: ends.clone(),
-            },
+            title: title.to_owned(),
+            vertical_label: label.to_owned(),
+            horizontal: Horizontal::Quantity("length along the edge [mm]".to_owned()),
+            series,
+            bands,
+            markers: ends.clone(),
             group: "finished edge".to_owned(),
-            ..Chart::default()
+            ..Panel::default()
         })
     };
     let chamfer = &document["chamfer"];
@@ -78,7 +75,7 @@ pub(super) fn finished_edge<'a>(profile: &EdgeProfile, document: &Value) -> Page
     }
     let told = "The burr comes off first, from its tip, then the edge is chamfered. A secondary burr, pushed over by the tool, is not modelled.";
     blocks.push(Block::Hint(told.to_owned()));
-    PageSection::new("Finished edge", blocks)
+    Section::new("Finished edge", blocks)
 }
 
 /// Where the ends begin that the numbers of the edge leave out: where the tool is set on and lifted off.

@@ -3,14 +3,14 @@
 use serde_json::Value;
 
 use crate::diagnosis::answer::words::listed;
-use crate::page::{Block, PageSection};
+use crate::document::{Block, Section};
 use crate::quantity::counted;
 
 /// Table whose values are told by their number alone, there being many.
 const DEVICE: &str = "device.";
 
 /// The part of a page that says so; none where no such value is in use. `file` is the document's.
-pub(super) fn judged(document: &Value, file: &str) -> Option<PageSection<'static>> {
+pub(super) fn judged(document: &Value, file: &str) -> Option<Section<'static>> {
     let values = document["judged"].as_array()?;
     let mut groups: Vec<(&str, Vec<&Value>)> = Vec::new();
     for value in values {
@@ -45,10 +45,7 @@ pub(super) fn judged(document: &Value, file: &str) -> Option<PageSection<'static
         "These numbers rest on values that nobody has measured in public (judged): {}. {file} lists them; measure your own.",
         rests.join("; ")
     );
-    Some(PageSection::new(
-        "Judged values",
-        vec![Block::Paragraph(text)],
-    ))
+    Some(Section::new("Judged values", vec![Block::Paragraph(text)]))
 }
 
 #[cfg(test)]

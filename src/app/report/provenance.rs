@@ -1,16 +1,16 @@
 //! The part of a page that says where all comes from.
 
-use crate::page::{Block, PageSection, PageTable, TableCell};
+use crate::document::{Block, Cell, Section, Table};
 use crate::recording::provenance::{Provenance, SourceFile};
 
 /// Where a document says that it comes from.
-pub(super) fn provenance_of(document: &serde_json::Value) -> PageSection<'static> {
+pub(super) fn provenance_of(document: &serde_json::Value) -> Section<'static> {
     let known = serde_json::from_value(document["provenance"].clone());
     provenance(&known.unwrap_or_default())
 }
 
 /// The same of a program, libraries included, and files.
-pub(in super::super) fn sources(program: &str, files: &[SourceFile]) -> PageSection<'static> {
+pub(in super::super) fn sources(program: &str, files: &[SourceFile]) -> Section<'static> {
     provenance(&Provenance {
         program: program.to_owned(),
         files: files.to_vec(),
@@ -19,7 +19,7 @@ pub(in super::super) fn sources(program: &str, files: &[SourceFile]) -> PageSect
 }
 
 /// The part of a page that says where all comes from.
-pub(super) fn provenance(from: &Provenance) -> PageSection<'static> {
+pub(super) fn provenance(from: &Provenance) -> Section<'static> {
     let mut made = format!("Made by {}", from.program);
     if !from.libraries.is_empty() {
         made += &format!(" with {}", from.libraries.join(", "));
@@ -30,16 +30,16 @@ pub(super) fn provenance(from: &Provenance) -> PageSection<'static> {
     };
     let rows = from.files.iter().map(|file| {
         vec![
-            TableCell::from(file.file.clone()),
-            TableCell::from(file.bytes.to_string()),
-            TableCell::Hash(file.sha256.clone()),
+            Cell::from(file.file.clone()),
+            Cell::from(file.bytes.to_string()),
+            Cell::Hash(file.sha256.clone()),
         ]
     });
-    PageSection::new(
+    Section::new(
         "Provenance",
         vec![
             Block::Paragraph(made),
-            Block::PageTable(PageTable::new(
+            Block::Table(Table::new(
                 "Files that were read",
                 &["file", "#bytes", "SHA-256"],
                 rows.collect(),

@@ -3,17 +3,17 @@
 use serde_json::Value;
 
 use super::design::{bare, limit_words, list, named, quantity, text};
-use crate::page::{Block, PageSection, PageTable, TableCell};
+use crate::document::{Block, Cell, Section, Table};
 use crate::quantity::UNKNOWN;
 use crate::quantity::spoken::{number, spoken};
 
 /// The section; none if nothing was drawn at the chosen design.
-pub(super) fn robustness<'a>(document: &Value, svg: Option<&str>) -> Option<PageSection<'a>> {
+pub(super) fn robustness<'a>(document: &Value, svg: Option<&str>) -> Option<Section<'a>> {
     let robustness = document.get("robustness")?;
     let picture = svg.map(|svg| Block::Picture(bare(svg).to_owned()));
     let blocks = [kept(robustness), quantiles(robustness), drawn(robustness)];
-    let blocks = picture.into_iter().chain(blocks.map(Block::PageTable));
-    Some(PageSection::new("Robustness", blocks.collect()))
+    let blocks = picture.into_iter().chain(blocks.map(Block::Table));
+    Some(Section::new("Robustness", blocks.collect()))
 }
 
 fn percent(value: &Value) -> String {
@@ -22,7 +22,7 @@ fn percent(value: &Value) -> String {
         .map_or(UNKNOWN.to_owned(), |value| format!("{value:.0}"))
 }
 
-fn kept(robustness: &Value) -> PageTable {
+fn kept(robustness: &Value) -> Table {
     let row = |name: String, share: &Value| {
         let [low, high] = [0, 1].map(|end| percent(&share["interval_percent"][end]));
         let cells = [
@@ -31,7 +31,7 @@ fn kept(robustness: &Value) -> PageTable {
             percent(&share["share_percent"]),
             format!("{low} to {high}"),
         ];
-        cells.map(TableCell::from).to_vec()
+        cells.map(Cell::from).to_vec()
     };
     let all = row("all limits".to_owned(), &robustness["all_limits"]);
     let limits =
@@ -42,36 +42,36 @@ fn kept(robustness: &Value) -> PageTable {
         robustness["runs"], robustness["seed"]
     );
     let columns = ["limit", "#draws", "#share, %", "#interval, %"];
-    PageTable::new(&caption, &columns, rows)
+    Table::new(&caption, &columns, rows)
 }
 
-fn quantiles(robustness: &Value) -> PageTable {
+fn quantiles(robustness: &Value) -> Table {
     let row = |told: &Value| {
         let key = text(&told["metric"]);
         let of = |which: &str| quantity(key, &told[which]);
         let values = ["chosen", "percent_5", "percent_50", "percent_95"].map(of);
         let cells = [named(key).0].into_iter().chain(values);
-        cells.map(TableCell::from).collect()
+        cells.map(Cell::from).collect()
     };
     let caption =
         "Values below which 5, 50 and 95 % of the draws lie, beside the chosen design as it is.";
     let columns = ["quantity", "#as it is", "#5 %", "#50 %", "#95 %"];
-    PageTable::new(
+    Table::new(
         caption,
         &columns,
         list(&robustness["quantiles"]).map(row).collect(),
     )
 }
 
-fn drawn(robustness: &Value) -> PageTable {
+fn drawn(robustness: &Value) -> Table {
     let row = |variable: &Value| {
         let (name, unit) = spoken(text(&variable["key"]));
         let cells = [name, unit, words(&variable["distribution"])];
-        cells.map(TableCell::from).to_vec()
+        cells.map(Cell::from).to_vec()
     };
     let caption = "What was drawn, as a Latin hypercube.";
     let columns = ["variable", "unit", "distribution"];
-    PageTable::new(
+    Table::new(
         caption,
         &columns,
         list(&robustness["variables"]).map(row).collect(),

@@ -12,9 +12,9 @@ use super::judged::judged;
 use super::provenance::provenance_of;
 use super::run_result::RunResult;
 use super::signals::{along_the_path, joints, signals};
+use crate::document::{Block, Cell, Document, Fact, Section, Table, Tone, html};
 use crate::metrics::Label;
 use crate::metrics::{LevelSummary, NARROW_BAND, PassSummary, WIDE_BAND};
-use crate::page::{Block, Fact, Page, PageSection, PageTable, TableCell, Tone, html};
 use crate::quantity::{UNKNOWN, change, optional, with_unit};
 use crate::recording::Recording;
 use crate::recording::csv::EdgeProfile;
@@ -44,7 +44,7 @@ pub(in super::super) fn page_of_run(
 }
 
 /// The page.
-fn page<'a>(run: &'a RunResult<'_>) -> Page<'a> {
+fn page<'a>(run: &'a RunResult<'_>) -> Document<'a> {
     let (verdict, tone) = verdict(run);
     let notes = run.document["notes"].as_array().into_iter().flatten();
     let notes = notes.filter_map(Value::as_str);
@@ -64,7 +64,7 @@ fn page<'a>(run: &'a RunResult<'_>) -> Page<'a> {
         judged(&run.document, SUMMARY),
         Some(from(run)),
     ];
-    Page {
+    Document {
         title: run.title().to_owned(),
         tone,
         lead: far.into_iter().chain(notes).collect(),
@@ -335,7 +335,7 @@ fn peak(run: &RunResult<'_>) -> Option<Fact> {
     })
 }
 
-fn pictures<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a>> {
+fn pictures<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
     let is_bench = run.document["kind"] == "bench";
     let title = if is_bench {
         "The bench"
@@ -362,11 +362,11 @@ fn pictures<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a>> {
         let words = "The tool across the edge in the middle of following, as it is planned; process.lean_deg and process.tool_axis set it.";
         blocks.push(Block::Sketches(vec![(words.to_owned(), lean.to_string())]));
     }
-    (!blocks.is_empty()).then(|| PageSection::new(title, blocks))
+    (!blocks.is_empty()).then(|| Section::new(title, blocks))
 }
 
 /// Result of each command of a bench.
-fn levels<'a>(run: &RunResult<'_>) -> Option<PageSection<'a>> {
+fn levels<'a>(run: &RunResult<'_>) -> Option<Section<'a>> {
     let levels = run.document["summary"]["levels"].clone();
     let levels: Vec<LevelSummary> = serde_json::from_value(levels).ok()?;
     let names: Vec<String> = LEVELS
@@ -375,22 +375,21 @@ fn levels<'a>(run: &RunResult<'_>) -> Option<PageSection<'a>> {
         .collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let row = |level: &LevelSummary| {
-        let cell =
-            |column: &LevelColumn| TableCell::from(optional((column.value)(level), column.unit));
+        let cell = |column: &LevelColumn| Cell::from(optional((column.value)(level), column.unit));
         LEVELS.iter().map(cell).collect()
     };
-    let rows: Vec<Vec<TableCell>> = levels.iter().map(row).collect();
+    let rows: Vec<Vec<Cell>> = levels.iter().map(row).collect();
     let caption = "Steady values of each command, up to the next or to where something else begins to move; settled: until the force stays within 5 % of its change.";
     (!rows.is_empty()).then(|| {
-        PageSection::new(
+        Section::new(
             "Commands",
-            vec![Block::PageTable(PageTable::new(caption, &names, rows))],
+            vec![Block::Table(Table::new(caption, &names, rows))],
         )
     })
 }
 
 /// Each pass of a run of several.
-fn passes<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a>> {
+fn passes<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
     let passes: Vec<PassSummary> =
         serde_json::from_value(run.document["summary"]["passes"].clone()).ok()?;
     if passes.len() < 2 {
@@ -401,19 +400,19 @@ fn passes<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a>> {
         .map(|column| format!("#{}, {}", column.name, column.unit));
     let names: Vec<String> = std::iter::once("#pass".to_owned()).chain(names).collect();
     let row = |pass: &PassSummary| {
-        let value = |column: &PassColumn| TableCell::from(shown((column.value)(pass), column.unit));
-        let number = TableCell::from(pass.pass.to_string());
+        let value = |column: &PassColumn| Cell::from(shown((column.value)(pass), column.unit));
+        let number = Cell::from(pass.pass.to_string());
         std::iter::once(number)
             .chain(PASSES.iter().map(value))
             .collect()
     };
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let caption = "Each pass along the edge, against its own desired force; the other numbers of the force are those of the first.";
-    let table = PageTable::new(caption, &names, passes.iter().map(row).collect());
-    Some(PageSection::new("Passes", vec![Block::PageTable(table)]))
+    let table = Table::new(caption, &names, passes.iter().map(row).collect());
+    Some(Section::new("Passes", vec![Block::Table(table)]))
 }
 
-fn metrics<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a>> {
+fn metrics<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
     let expectations = run.document["expectations"].as_array();
     let bounds = |key: &str| {
         let own = |e: &&Value| e["metric"] == key && e["pass"].is_null();
@@ -422,18 +421,18 @@ fn metrics<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a>> {
     };
     let row = |(label, value): (Label, Option<f64>)| {
         vec![
-            TableCell::from(label.name),
-            TableCell::from(shown(value, label.unit)),
-            TableCell::from(label.unit),
+            Cell::from(label.name),
+            Cell::from(shown(value, label.unit)),
+            Cell::from(label.unit),
             match bounds(label.key) {
-                Some((text, kept)) => TableCell::Judged(text, kept),
-                None => TableCell::from(""),
+                Some((text, kept)) => Cell::Judged(text, kept),
+                None => Cell::from(""),
             },
-            TableCell::from(label.meaning),
-            TableCell::from(label.key),
+            Cell::from(label.meaning),
+            Cell::from(label.key),
         ]
     };
-    let rows: Vec<Vec<TableCell>> = run.metrics().into_iter().map(row).collect();
+    let rows: Vec<Vec<Cell>> = run.metrics().into_iter().map(row).collect();
     let columns = [
         "number",
         "#value",
@@ -443,11 +442,11 @@ fn metrics<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a>> {
         "key in summary.json",
     ];
     let caption = format!("{UNKNOWN}: not determined by this run.");
-    let table = PageTable::new(&caption, &columns, rows);
-    Some(PageSection::new("Numbers", vec![Block::PageTable(table)]))
+    let table = Table::new(&caption, &columns, rows);
+    Some(Section::new("Numbers", vec![Block::Table(table)]))
 }
 
-fn from<'a>(run: &RunResult<'_>) -> PageSection<'a> {
+fn from<'a>(run: &RunResult<'_>) -> Section<'a> {
     let mut section = provenance_of(&run.document);
     let of = |key: &str| run.document[key].as_str().unwrap_or("–").to_owned();
     let mut told = format!("Scenario {}", of("scenario"));

@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 use serde_json::Value;
 
+use crate::document::Drawing;
 use crate::metrics::{Label, labels};
-use crate::page::Drawing;
 use crate::recording::Recording;
 use crate::recording::csv::EdgeProfile;
 

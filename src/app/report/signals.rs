@@ -4,8 +4,9 @@ use serde_json::Value;
 
 use super::super::bench_figures::{FORCE, Line, PRESSURE, STROKE};
 use super::run_result::RunResult;
-use crate::figure::{Horizontal, Marker, Panel, Role, Series, Stroke};
-use crate::page::{Block, Chart, PageSection, PageTable, TableCell};
+use crate::document::{
+    Block, Cell, Horizontal, Marker, Panel, Role, Section, Series, Stroke, Table,
+};
 use crate::quantity::column;
 use crate::recording::PhaseSpan;
 use crate::recording::schema::{self, JointSignal, joint_quantity};
@@ -82,22 +83,19 @@ fn markers(run: &RunResult<'_>) -> Vec<Marker> {
     run.recording.phases().iter().map(marker).collect()
 }
 
-fn chart<'a>(run: &RunResult<'_>, title: &str, label: &str, series: Vec<Series<'a>>) -> Chart<'a> {
-    Chart {
-        panel: Panel {
-            title: title.to_owned(),
-            vertical_label: label.to_owned(),
-            horizontal: Horizontal::Time,
-            series,
-            markers: markers(run),
-            ..Panel::default()
-        },
+fn chart<'a>(run: &RunResult<'_>, title: &str, label: &str, series: Vec<Series<'a>>) -> Panel<'a> {
+    Panel {
+        title: title.to_owned(),
+        vertical_label: label.to_owned(),
+        horizontal: Horizontal::Time,
+        series,
+        markers: markers(run),
         group: "run".to_owned(),
-        ..Chart::default()
+        ..Panel::default()
     }
 }
 
-pub(super) fn signals<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a>> {
+pub(super) fn signals<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
     let hint = "Draw over a chart to zoom it, and all of the run; a double click shows all.";
     let mut blocks = vec![Block::Hint(hint.to_owned())];
     for group in chart_groups() {
@@ -111,14 +109,14 @@ pub(super) fn signals<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a>> {
         };
         let series: Vec<Series<'_>> = group.lines.iter().filter_map(line).collect();
         if !series.is_empty() {
-            blocks.push(Block::Chart(chart(run, group.title, group.label, series)));
+            blocks.push(Block::Panel(chart(run, group.title, group.label, series)));
         }
     }
-    (blocks.len() > 1).then(|| PageSection::new("Signals", blocks))
+    (blocks.len() > 1).then(|| Section::new("Signals", blocks))
 }
 
 /// Force over the place on the edge: what a deburrer asks for.
-pub(super) fn along_the_path<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a>> {
+pub(super) fn along_the_path<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
     let places = &run.recording.channel(schema::PATH_LENGTH)?.values;
     let force = &run.recording.channel(schema::CONTACT_FORCE)?.values;
     let follow = run.recording.phases().iter().find(|p| p.name == "follow")?;
@@ -137,10 +135,7 @@ pub(super) fn along_the_path<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'
         )],
         ..Panel::default()
     };
-    let mut blocks = vec![Block::Chart(Chart {
-        panel,
-        ..Chart::default()
-    })];
+    let mut blocks = vec![Block::Panel(panel)];
     let tenths = run.document["summary"]["force_by_tenth"].as_array();
     let tenths: Vec<&Value> = tenths.into_iter().flatten().collect();
     let of = |key: &str, unit| {
@@ -154,21 +149,21 @@ pub(super) fn along_the_path<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'
         of("force_standard_deviation_n", "N"),
     ];
     let row = |index: usize| {
-        let cell = |column: &Vec<String>| TableCell::from(column[index].clone());
+        let cell = |column: &Vec<String>| Cell::from(column[index].clone());
         columns.iter().map(cell).collect()
     };
-    let rows: Vec<Vec<TableCell>> = (0..tenths.len()).map(row).collect();
+    let rows: Vec<Vec<Cell>> = (0..tenths.len()).map(row).collect();
     if !rows.is_empty() {
-        blocks.push(Block::PageTable(PageTable::new(
+        blocks.push(Block::Table(Table::new(
             "Contact force by tenths of the edge",
             &["#from, mm", "#to, mm", "#mean, N", "#standard deviation, N"],
             rows,
         )));
     }
-    Some(PageSection::new("Along the edge", blocks))
+    Some(Section::new("Along the edge", blocks))
 }
 
-pub(super) fn joints<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a>> {
+pub(super) fn joints<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
     let names = run.document["joint_names"].as_array()?;
     let line = |(index, role): (usize, Role)| {
         let quantity = joint_quantity(index + 1, JointSignal::Torque);
@@ -185,6 +180,6 @@ pub(super) fn joints<'a>(run: &'a RunResult<'_>) -> Option<PageSection<'a>> {
     let series: Vec<Series<'_>> = ROLES.into_iter().enumerate().filter_map(line).collect();
     (!series.is_empty()).then(|| {
         let chart = chart(run, "Torque of the drives", "torque [N m]", series);
-        PageSection::new("The arm", vec![Block::Chart(chart)])
+        Section::new("The arm", vec![Block::Panel(chart)])
     })
 }

@@ -7,17 +7,17 @@ use crate::diagnosis::answer::details::{
 };
 use crate::diagnosis::answer::estimate::Limit;
 use crate::diagnosis::answer::words::{odds, of_column, percent, spoken, yardstick};
-use crate::page::{Block, PageSection, PageTable, TableCell};
+use crate::document::{Block, Cell, Section, Table};
 use crate::quantity::{change, significant};
 
-pub(super) fn how_well<'a>(answer: &Answer) -> Option<PageSection<'a>> {
+pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
     let details = &answer.details;
     let yardstick = yardstick(details.remaining.is_some());
     let tables = [
         misfit(&details.misfit, yardstick),
         prediction(&details.prediction, yardstick),
     ];
-    let mut blocks: Vec<Block<'a>> = tables.into_iter().flatten().map(Block::PageTable).collect();
+    let mut blocks: Vec<Block<'a>> = tables.into_iter().flatten().map(Block::Table).collect();
     let kinds = [
         SectionKind::Remaining,
         SectionKind::Simulated,
@@ -25,37 +25,37 @@ pub(super) fn how_well<'a>(answer: &Answer) -> Option<PageSection<'a>> {
         SectionKind::Runs,
     ];
     blocks.extend(told(answer, &kinds));
-    (!blocks.is_empty()).then(|| PageSection::new("How well it fits", blocks))
+    (!blocks.is_empty()).then(|| Section::new("How well it fits", blocks))
 }
 
 /// Departure of each channel of each recording, in multiples of `yardstick`.
-fn misfit(misfit: &[ChannelMisfit], yardstick: &str) -> Option<PageTable> {
+fn misfit(misfit: &[ChannelMisfit], yardstick: &str) -> Option<Table> {
     let row = |m: &ChannelMisfit| {
         let (words, unit, factor) = of_column(&m.channel);
-        let sigmas = |v: f64| TableCell::from(significant(v, 3));
+        let sigmas = |v: f64| Cell::from(significant(v, 3));
         vec![
-            TableCell::from(m.recording.clone()),
-            TableCell::from(words),
-            TableCell::from(m.samples.to_string()),
-            TableCell::from(format!(
+            Cell::from(m.recording.clone()),
+            Cell::from(words),
+            Cell::from(m.samples.to_string()),
+            Cell::from(format!(
                 "{} {unit}",
                 significant(factor * m.believed_rms, 3)
             )),
-            TableCell::from(format!(
+            Cell::from(format!(
                 "{} {unit}",
                 significant(factor * m.improved_rms, 3)
             )),
             sigmas(m.believed_sigmas),
             sigmas(m.tolerated_sigmas),
             sigmas(m.improved_sigmas),
-            m.left_out_sigmas.map_or(TableCell::from("–"), sigmas),
+            m.left_out_sigmas.map_or(Cell::from("–"), sigmas),
         ]
     };
     (!misfit.is_empty()).then(|| {
         let caption = format!(
             "What the models leave of each channel: root mean square, then a robust one in multiples of {yardstick} (1 is as much). The last column is a fit to the other recordings."
         );
-        PageTable::new(
+        Table::new(
             &caption,
             &[
                 "recording",
@@ -74,24 +74,24 @@ fn misfit(misfit: &[ChannelMisfit], yardstick: &str) -> Option<PageTable> {
 }
 
 /// Errors on what was not fitted to.
-fn prediction(errors: &[PredictionError], yardstick: &str) -> Option<PageTable> {
+fn prediction(errors: &[PredictionError], yardstick: &str) -> Option<Table> {
     let row = |e: &PredictionError| {
         let (words, unit, factor) = of_column(&e.channel);
-        let number = |v: f64| TableCell::from(format!("{} {unit}", significant(factor * v, 3)));
+        let number = |v: f64| Cell::from(format!("{} {unit}", significant(factor * v, 3)));
         vec![
-            TableCell::from(e.recording.clone()),
-            TableCell::from(words),
+            Cell::from(e.recording.clone()),
+            Cell::from(words),
             number(e.believed),
             number(e.before),
             number(e.after),
-            e.noise.map_or(TableCell::from("–"), number),
-            e.after_sigmas.map_or(TableCell::from("–"), |sigmas| {
-                TableCell::from(significant(sigmas, 3))
+            e.noise.map_or(Cell::from("–"), number),
+            e.after_sigmas.map_or(Cell::from("–"), |sigmas| {
+                Cell::from(significant(sigmas, 3))
             }),
         ]
     };
     (!errors.is_empty()).then(|| {
-        PageTable::new(
+        Table::new(
             "Root mean square of the errors on what was not fitted to; σ: the robust one in multiples of the last but one column.",
             &[
                 "recording",
@@ -108,50 +108,50 @@ fn prediction(errors: &[PredictionError], yardstick: &str) -> Option<PageTable> 
 }
 
 /// The smallest effects that the recordings would have shown.
-pub(super) fn detectable<'a>(answer: &Answer) -> Option<PageSection<'a>> {
+pub(super) fn detectable<'a>(answer: &Answer) -> Option<Section<'a>> {
     let all = &answer.details.detectable;
     let row = |smallest: &DetectableReport| {
         vec![
-            TableCell::from(smallest.effect.clone()),
-            TableCell::from(smallest.words()),
+            Cell::from(smallest.effect.clone()),
+            Cell::from(smallest.words()),
         ]
     };
     (!all.is_empty()).then(|| {
-        let table = PageTable::new(
+        let table = Table::new(
             "The smallest effects that these recordings would have shown, each alone and nine times in ten, if not always by its name.",
             &["effect", "numbers"],
             all.iter().map(row).collect(),
         );
-        PageSection::new("What would have shown", vec![Block::PageTable(table)])
+        Section::new("What would have shown", vec![Block::Table(table)])
     })
 }
 
-pub(super) fn own_numbers<'a>(answer: &Answer) -> Option<PageSection<'a>> {
+pub(super) fn own_numbers<'a>(answer: &Answer) -> Option<Section<'a>> {
     let tolerated = &answer.details.tolerated;
     let row = |number: &ToleratedNumber| {
         let (words, unit, factor) = spoken(&number.key);
         let found = number.found;
         let shift = 100.0 * (found.value / number.believed - 1.0);
         vec![
-            TableCell::from(words),
-            TableCell::from(significant(factor * number.believed, 4)),
-            TableCell::from(significant(factor * found.value, 4)),
-            TableCell::from(significant(factor * found.low, 4)),
-            TableCell::from(significant(factor * found.high, 4)),
-            TableCell::from(unit),
-            TableCell::from(match shift.is_finite() {
+            Cell::from(words),
+            Cell::from(significant(factor * number.believed, 4)),
+            Cell::from(significant(factor * found.value, 4)),
+            Cell::from(significant(factor * found.low, 4)),
+            Cell::from(significant(factor * found.high, 4)),
+            Cell::from(unit),
+            Cell::from(match shift.is_finite() {
                 true => change(shift),
                 false => String::new(),
             }),
             match found.at_limit {
-                Some(Limit::Lower) => TableCell::Judged("lower end".to_owned(), false),
-                Some(Limit::Upper) => TableCell::Judged("upper end".to_owned(), false),
-                None => TableCell::from(""),
+                Some(Limit::Lower) => Cell::Judged("lower end".to_owned(), false),
+                Some(Limit::Upper) => Cell::Judged("upper end".to_owned(), false),
+                None => Cell::from(""),
             },
         ]
     };
-    let rows: Vec<Vec<TableCell>> = tolerated.iter().map(row).collect();
-    let table = PageTable::new(
+    let rows: Vec<Vec<Cell>> = tolerated.iter().map(row).collect();
+    let table = Table::new(
         "The rig file's own numbers, moved within their tolerances.",
         &[
             "number",
@@ -166,10 +166,10 @@ pub(super) fn own_numbers<'a>(answer: &Answer) -> Option<PageSection<'a>> {
         rows,
     );
     (!tolerated.is_empty())
-        .then(|| PageSection::new("The rig's own numbers", vec![Block::PageTable(table)]))
+        .then(|| Section::new("The rig's own numbers", vec![Block::Table(table)]))
 }
 
-pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<PageSection<'a>> {
+pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<Section<'a>> {
     let details = &answer.details;
     let mut blocks = Vec::new();
     let names = |effects: &[String]| {
@@ -181,8 +181,8 @@ pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<PageSection<'a>> {
     };
     let row = |other: &Considered| {
         let against = match other.log10_odds {
-            power if other.is_close() => TableCell::Judged(odds(power), false),
-            power => TableCell::from(odds(power)),
+            power if other.is_close() => Cell::Judged(odds(power), false),
+            power => Cell::from(odds(power)),
         };
         let judged = match (other.is_close(), other.is_ruled_out()) {
             (true, _) => "not ruled out",
@@ -190,15 +190,15 @@ pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<PageSection<'a>> {
             _ => "fell behind",
         };
         vec![
-            TableCell::from(names(&other.effects)),
-            TableCell::from(judged),
+            Cell::from(names(&other.effects)),
+            Cell::from(judged),
             against,
-            TableCell::from(other.explained_share.map_or("–".to_owned(), percent)),
-            TableCell::from(if other.in_full { "in full" } else { "roughly" }),
+            Cell::from(other.explained_share.map_or("–".to_owned(), percent)),
+            Cell::from(if other.in_full { "in full" } else { "roughly" }),
         ]
     };
     if !details.considered.is_empty() {
-        blocks.push(Block::PageTable(PageTable::new(
+        blocks.push(Block::Table(Table::new(
             "Other explanations, against the one given. Ruled out: fitted in full, at odds below 1 to 100; fell behind: the same by a rough fit, with the piston held to its measured motion, where a law that acts on the motion alone can seem to explain more than it does.",
             &["explanation", "", "#odds", "#of the mismatch explained", "fitted"],
             details.considered.iter().map(row).collect(),
@@ -209,19 +209,19 @@ pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<PageSection<'a>> {
     let (_, unit, factor) = of_column(own.map_or("", |misfit| misfit.channel.as_str()));
     let row = |variant: &RuledOutReport| {
         vec![
-            TableCell::from(names(&variant.effects)),
-            TableCell::from(format!("{} {unit}", significant(factor * variant.rms, 3))),
+            Cell::from(names(&variant.effects)),
+            Cell::from(format!("{} {unit}", significant(factor * variant.rms, 3))),
         ]
     };
     if !details.ruled_out.is_empty() {
-        blocks.push(Block::PageTable(PageTable::new(
+        blocks.push(Block::Table(Table::new(
             "Variants of the answer, fitted anew: without one of its effects, or with another law in its place.",
             &["explanation", "#leaves, RMS"],
             details.ruled_out.iter().map(row).collect(),
         )));
     }
     blocks.extend(told(answer, &[SectionKind::Ambiguous]));
-    (!blocks.is_empty()).then(|| PageSection::new("Other explanations", blocks))
+    (!blocks.is_empty()).then(|| Section::new("Other explanations", blocks))
 }
 
 /// What the account says of these, a paragraph each.

@@ -5,9 +5,12 @@ use std::path::Path;
 use super::super::error::AppError;
 use super::super::report::sources;
 use super::table::{RUNS, columns};
-use crate::figure::{Figure, Horizontal, Panel, Role, Series, Stroke, svg};
+use crate::document::{
+    Block, Cell, Document, Figure, Horizontal, Panel, Role, Section, Series, Stroke, Table, Tone,
+    html,
+};
+use crate::figure::svg;
 use crate::metrics::Label;
-use crate::page::{Block, Page, PageSection, PageTable, TableCell, Tone, html};
 use crate::quantity::spoken::{number as plain, spoken};
 use crate::quantity::{UNKNOWN, column, number};
 use crate::recording::long_column::LongColumn;
@@ -27,7 +30,7 @@ pub(in super::super) fn page_of(swept: &Swept, table: &Path) -> Result<String, A
     Ok(html(&page(swept, table)?))
 }
 
-fn page(swept: &Swept, table: &Path) -> Result<Page<'static>, AppError> {
+fn page(swept: &Swept, table: &Path) -> Result<Document<'static>, AppError> {
     let clean = !swept.codes.keys().any(|code| *code > 0);
     let stopped = swept.stopped.iter();
     let stopped = stopped.map(|(run, reason)| format!("Run {run}: {reason}"));
@@ -36,7 +39,7 @@ fn page(swept: &Swept, table: &Path) -> Result<Page<'static>, AppError> {
     sections.push(distribution(swept));
     sections.push(varied(swept));
     sections.push(sources(&swept.program, &swept.files));
-    Ok(Page {
+    Ok(Document {
         title: format!("Sweep of {}", swept.title),
         verdict: swept.verdict(),
         tone: if clean { Tone::Good } else { Tone::Found },
@@ -45,7 +48,7 @@ fn page(swept: &Swept, table: &Path) -> Result<Page<'static>, AppError> {
         footer: format!(
             "Made by idc vary. {RUNS} beside this page has a row for each run; a run is done again in full by idc run with its values (--set)."
         ),
-        ..Page::default()
+        ..Document::default()
     })
 }
 
@@ -74,34 +77,34 @@ fn differing(swept: &Swept) -> Vec<(Label, &MetricOfRuns)> {
         .collect()
 }
 
-fn drivers(swept: &Swept) -> PageSection<'static> {
+fn drivers(swept: &Swept) -> Section<'static> {
     let rows = differing(swept).into_iter().flat_map(|(label, metric)| {
         let sure = metric.sure().map(|driver| {
             let [low, high] = driver.interval;
             vec![
-                TableCell::from(spoken(short(&driver.key)).0),
-                TableCell::from(percent(driver.share)),
-                TableCell::from(format!("{} to {}", percent(low), percent(high))),
-                TableCell::Interval([0.0, low, driver.share, high, 1.0]),
-                TableCell::from(percent(driver.shuffled)),
-                TableCell::from(match driver.rank_correlation {
+                Cell::from(spoken(short(&driver.key)).0),
+                Cell::from(percent(driver.share)),
+                Cell::from(format!("{} to {}", percent(low), percent(high))),
+                Cell::Interval([0.0, low, driver.share, high, 1.0]),
+                Cell::from(percent(driver.shuffled)),
+                Cell::from(match driver.rank_correlation {
                     Some(correlation) => format!("{correlation:.2}"),
                     None => UNKNOWN.to_owned(),
                 }),
             ]
         });
-        let mut rows: Vec<Vec<TableCell>> = sure.chain(unsure(metric)).collect();
+        let mut rows: Vec<Vec<Cell>> = sure.chain(unsure(metric)).collect();
         for (place, row) in rows.iter_mut().enumerate() {
             let name = if place == 0 {
                 named(&label)
             } else {
                 String::new()
             };
-            row.insert(0, TableCell::from(name));
+            row.insert(0, Cell::from(name));
         }
         rows
     });
-    let rows: Vec<Vec<TableCell>> = rows.collect();
+    let rows: Vec<Vec<Cell>> = rows.collect();
     let words = "Share of a number's variance over the runs that goes with one variable alone (first-order index), with its interval at 95 %; what is missing \
                  to 100 % is due to variables together, and to what is drawn at random. By chance: what the same values get at most, 95 times of 100, where they are shuffled \
                  among the runs; a share is named where its whole interval lies above that. Rank correlation: 1 where the number only grows with the variable, -1 where it only falls.";
@@ -118,16 +121,16 @@ fn drivers(swept: &Swept) -> PageSection<'static> {
         true => Block::Paragraph(
             "No number differs between the runs, or there are too few runs to say.".to_owned(),
         ),
-        false => Block::PageTable(PageTable::new("", &columns, rows)),
+        false => Block::Table(Table::new("", &columns, rows)),
     };
-    PageSection::new(
+    Section::new(
         "Which variable drives which number",
         vec![Block::Hint(words.to_owned()), block],
     )
 }
 
 /// The variables of which a number's shares are not told from chance, in a row, with how large one of them may be all the same.
-fn unsure(metric: &MetricOfRuns) -> Option<Vec<TableCell>> {
+fn unsure(metric: &MetricOfRuns) -> Option<Vec<Cell>> {
     let others: Vec<_> = metric
         .drivers
         .iter()
@@ -147,24 +150,24 @@ fn unsure(metric: &MetricOfRuns) -> Option<Vec<TableCell>> {
         .fold(0.0, f64::max);
     (!others.is_empty()).then(|| {
         vec![
-            TableCell::from(format!("no more than chance: {}", names.join(", "))),
-            TableCell::from(UNKNOWN),
-            TableCell::from(format!("each at most {}", percent(most))),
-            TableCell::from(""),
-            TableCell::from(percent(chance)),
-            TableCell::from(UNKNOWN),
+            Cell::from(format!("no more than chance: {}", names.join(", "))),
+            Cell::from(UNKNOWN),
+            Cell::from(format!("each at most {}", percent(most))),
+            Cell::from(""),
+            Cell::from(percent(chance)),
+            Cell::from(UNKNOWN),
         ]
     })
 }
 
-fn distribution(swept: &Swept) -> PageSection<'static> {
+fn distribution(swept: &Swept) -> Section<'static> {
     let labels = swept.labels();
     let rows = swept.metrics.iter().filter_map(|metric| {
         let label = labels.iter().find(|label| label.key == metric.name)?;
         let values: Vec<Option<f64>> = QUANTILES.map(|share| metric.quantile(share)).to_vec();
-        let first = [TableCell::from(named(label))].into_iter();
-        let cells = column(&values, label.unit).into_iter().map(TableCell::from);
-        let runs = TableCell::from(metric.runs.to_string());
+        let first = [Cell::from(named(label))].into_iter();
+        let cells = column(&values, label.unit).into_iter().map(Cell::from);
+        let runs = Cell::from(metric.runs.to_string());
         Some(first.chain(cells).chain([runs]).collect())
     });
     let heads = QUANTILES.map(|share| match share {
@@ -177,14 +180,11 @@ fn distribution(swept: &Swept) -> PageSection<'static> {
     columns.extend(heads.iter().map(String::as_str));
     columns.push("#runs");
     let caption = "Values below which these shares of the runs lie; runs that do not determine a number are left out.";
-    let table = PageTable::new(caption, &columns, rows.collect());
-    PageSection::new(
-        "Distribution of every number",
-        vec![Block::PageTable(table)],
-    )
+    let table = Table::new(caption, &columns, rows.collect());
+    Section::new("Distribution of every number", vec![Block::Table(table)])
 }
 
-fn varied(swept: &Swept) -> PageSection<'static> {
+fn varied(swept: &Swept) -> Section<'static> {
     let rows = swept.variables.iter().map(|variable| {
         let ends = variable.ends.map_or(UNKNOWN.to_owned(), |[low, high]| {
             format!("{} to {}", plain(low), plain(high))
@@ -197,17 +197,17 @@ fn varied(swept: &Swept) -> PageSection<'static> {
             variable.which.clone(),
             variable.values.to_string(),
         ]
-        .map(TableCell::from)
+        .map(Cell::from)
         .to_vec()
     });
     let caption = format!("The points are {}.", swept.points);
     let columns = ["key", "#values", "unit", "which", "#different"];
-    let table = PageTable::new(&caption, &columns, rows.collect());
-    PageSection::new("What was varied", vec![Block::PageTable(table)])
+    let table = Table::new(&caption, &columns, rows.collect());
+    Section::new("What was varied", vec![Block::Table(table)])
 }
 
 /// Numbers over what drives them most, and how they are distributed.
-fn pictures(swept: &Swept, table: &Path) -> Result<Option<PageSection<'static>>, AppError> {
+fn pictures(swept: &Swept, table: &Path) -> Result<Option<Section<'static>>, AppError> {
     let mut blocks = Vec::new();
     for (label, metric) in swept.told().take(DRAWN) {
         // The first is the largest share; of a number that nothing drives for sure, the run's own scatter is drawn over it all the same.
@@ -233,7 +233,7 @@ fn pictures(swept: &Swept, table: &Path) -> Result<Option<PageSection<'static>>,
     let words = "Above, each run over the variable that drives the number most; below, the share of the runs in which it is no larger.";
     Ok((!blocks.is_empty()).then(|| {
         blocks.insert(0, Block::Hint(words.to_owned()));
-        PageSection::new("Pictures", blocks)
+        Section::new("Pictures", blocks)
     }))
 }
 

@@ -1,23 +1,23 @@
 //! Pages for a browser: one HTML file with everything in it, for people who have nothing else installed.
 //!
-//! A [`Page`] is plain data. Its charts are drawn in the browser by uPlot (`assets/page/uplot/`) and what is seen in space by three.js
+//! A [`Document`] is plain data. Its charts are drawn in the browser by uPlot (`assets/page/uplot/`) and what is seen in space by three.js
 //! (`assets/page/three/`), which stand in the file; the page may ask for nothing over a network, and says so to the browser (Content-Security-Policy).
 //! The same page gives the same bytes.
 
-mod chart;
 mod drawing;
 mod html;
 mod packed;
+mod panel;
 mod thin;
 
-pub use chart::Chart;
 pub use drawing::{Drawing, DrawnArrow, DrawnBody, DrawnLegend, DrawnLine, DrawnView, Shade};
 pub use html::html;
+pub use panel::{Band, Figure, Horizontal, Marker, Panel, Role, Series, Stroke};
 pub use thin::kept;
 
 /// A page.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Page<'a> {
+pub struct Document<'a> {
     /// Its subject: `Diagnosis of case-14`.
     pub title: String,
     /// Its conclusion, in a sentence.
@@ -29,7 +29,7 @@ pub struct Page<'a> {
     /// Key numbers.
     pub facts: Vec<Fact>,
     /// Its parts.
-    pub sections: Vec<PageSection<'a>>,
+    pub sections: Vec<Section<'a>>,
     /// Last line.
     pub footer: String,
 }
@@ -63,7 +63,7 @@ pub struct Fact {
 
 /// A part of a page.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct PageSection<'a> {
+pub struct Section<'a> {
     /// Heading, and name in the list of contents.
     pub title: String,
     /// Its blocks.
@@ -80,9 +80,9 @@ pub enum Block<'a> {
     /// A paragraph that helps to read what follows.
     Hint(String),
     /// Rows and columns.
-    PageTable(PageTable),
+    Table(Table),
     /// A chart.
-    Chart(Chart<'a>),
+    Panel(Panel<'a>),
     /// Times in which something is so, over a span that all rows share.
     Strip(Strip),
     /// Lines as they are.
@@ -101,18 +101,18 @@ pub enum Block<'a> {
 
 /// Rows and columns.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct PageTable {
+pub struct Table {
     /// Its caption; may be empty.
     pub caption: String,
     /// Names of the columns, and whether they hold numbers.
     pub columns: Vec<(String, bool)>,
     /// As many cells a row as there are columns.
-    pub rows: Vec<Vec<TableCell>>,
+    pub rows: Vec<Vec<Cell>>,
 }
 
 /// A cell of a table.
 #[derive(Debug, Clone, PartialEq)]
-pub enum TableCell {
+pub enum Cell {
     /// Words or a number.
     Text(String),
     /// Words that are good news, or bad news.
@@ -132,7 +132,7 @@ pub struct Strip {
     pub rows: Vec<(String, Vec<[f64; 2]>)>,
 }
 
-impl<'a> PageSection<'a> {
+impl<'a> Section<'a> {
     /// A section with blocks.
     pub fn new(title: &str, blocks: Vec<Block<'a>>) -> Self {
         Self {
@@ -142,10 +142,10 @@ impl<'a> PageSection<'a> {
     }
 }
 
-impl PageTable {
+impl Table {
     /// A table; columns that begin with `#` hold numbers.
     #[must_use]
-    pub fn new(caption: &str, columns: &[&str], rows: Vec<Vec<TableCell>>) -> Self {
+    pub fn new(caption: &str, columns: &[&str], rows: Vec<Vec<Cell>>) -> Self {
         let column = |name: &&str| match name.strip_prefix('#') {
             Some(name) => (name.to_owned(), true),
             None => ((*name).to_owned(), false),
@@ -158,13 +158,13 @@ impl PageTable {
     }
 }
 
-impl From<&str> for TableCell {
+impl From<&str> for Cell {
     fn from(text: &str) -> Self {
         Self::Text(text.to_owned())
     }
 }
 
-impl From<String> for TableCell {
+impl From<String> for Cell {
     fn from(text: String) -> Self {
         Self::Text(text)
     }

@@ -3,14 +3,16 @@
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
 use serde_json::{Value, json};
 
-use super::{Block, Chart, Page, PageSection, PageTable, Strip, TableCell, Tone};
+mod chart;
 
-const STYLE: &str = include_str!("../../assets/page/page.css");
-const CHART_STYLE: &str = include_str!("../../assets/page/uplot/uPlot.min.css");
-const CHART_SCRIPT: &str = include_str!("../../assets/page/uplot/uPlot.iife.min.js");
-const SCRIPT: &str = include_str!("../../assets/page/page.js");
-const SPACE_LIBRARY: &str = include_str!("../../assets/page/three/three.iife.min.js");
-const SPACE_SCRIPT: &str = include_str!("../../assets/page/drawing.js");
+use super::{Block, Cell, Document, Panel, Section, Strip, Table, Tone};
+
+const STYLE: &str = include_str!("../../../assets/page/page.css");
+const CHART_STYLE: &str = include_str!("../../../assets/page/uplot/uPlot.min.css");
+const CHART_SCRIPT: &str = include_str!("../../../assets/page/uplot/uPlot.iife.min.js");
+const SCRIPT: &str = include_str!("../../../assets/page/page.js");
+const SPACE_LIBRARY: &str = include_str!("../../../assets/page/three/three.iife.min.js");
+const SPACE_SCRIPT: &str = include_str!("../../../assets/page/drawing.js");
 /// Nothing may be asked for over a network.
 const POLICY: &str =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
@@ -29,7 +31,7 @@ struct Budget {
 
 /// The page as a document.
 #[must_use]
-pub fn html(page: &Page<'_>) -> String {
+pub fn html(page: &Document<'_>) -> String {
     let counts = page.sections.iter().map(|s| numbers(&s.blocks));
     let (charts, all) = counts.fold((0, 0), |a, b| (a.0 + b.0, a.1 + b.1));
     let budget = Budget {
@@ -86,7 +88,7 @@ pub fn html(page: &Page<'_>) -> String {
 /// Charts, and their numbers.
 fn numbers(blocks: &[Block<'_>]) -> (usize, usize) {
     let of = |block: &Block<'_>| match block {
-        Block::Chart(chart) => (1, chart.numbers()),
+        Block::Panel(panel) => (1, panel.numbers()),
         Block::Folded(_, blocks) => numbers(blocks),
         _ => (0, 0),
     };
@@ -103,7 +105,7 @@ fn in_space(blocks: &[Block<'_>]) -> bool {
     })
 }
 
-fn section(part: &PageSection<'_>, budget: &Budget) -> Markup {
+fn section(part: &Section<'_>, budget: &Budget) -> Markup {
     markup! {
         section id=(anchor(&part.title)) {
             h2 { (part.title) }
@@ -118,8 +120,8 @@ fn block(block_of: &Block<'_>, budget: &Budget) -> Markup {
             Block::Heading(text) => h3 { (text) },
             Block::Paragraph(text) => p { (bound(text)) },
             Block::Hint(text) => p.hint { (bound(text)) },
-            Block::PageTable(of) => (table(of)),
-            Block::Chart(of) => (chart(of, budget)),
+            Block::Table(of) => (table(of)),
+            Block::Panel(of) => (chart(of, budget)),
             Block::Strip(of) => (strip(of)),
             Block::Lines(text) => pre { (text) },
             // Drawn by src/figure, whose texts are escaped.
@@ -152,29 +154,29 @@ fn within_script(data: &Value) -> String {
     data.to_string().replace('<', "\\u003c")
 }
 
-fn chart(chart: &Chart<'_>, budget: &Budget) -> Markup {
-    let columns = chart.panel.series.len() + 1;
-    let share = (budget.share * chart.numbers() as f64) as usize;
+fn chart(panel: &Panel<'_>, budget: &Budget) -> Markup {
+    let columns = panel.series.len() + 1;
+    let share = (budget.share * panel.numbers() as f64) as usize;
     let most = share.max(budget.least) / columns;
-    let (told, [kept, of]) = chart.told(most);
-    let told = within_script(&told);
-    let picked = match chart.is_cloud() {
+    let (data, [kept, of]) = panel.data(most);
+    let data = within_script(&data);
+    let picked = match panel.is_cloud() {
         true => "an even pick",
         false => "the extremes of each stretch",
     };
     markup! {
-        figure.chart aria-label={ (chart.panel.title) ": " (chart.panel.vertical_label) } {
+        figure.chart aria-label={ (panel.title) ": " (panel.vertical_label) } {
             figcaption {
-                span { (chart.panel.title) @if kept < of { small { " (" (kept) " of " (of) " samples: " (picked) ")" } } }
+                span { (panel.title) @if kept < of { small { " (" (kept) " of " (of) " samples: " (picked) ")" } } }
                 button.reset type="button" { "Show all" }
             }
             div.plot {}
-            script type="application/json" { (PreEscaped(told)) }
+            script type="application/json" { (PreEscaped(data)) }
         }
     }
 }
 
-fn table(table: &PageTable) -> Markup {
+fn table(table: &Table) -> Markup {
     let numeric = |index: usize| table.columns[index].1.then_some("number");
     markup! {
         div.scroll { table {
@@ -182,10 +184,10 @@ fn table(table: &PageTable) -> Markup {
             thead { tr { @for (name, number) in &table.columns { th class=[number.then_some("number")] scope="col" { (name) } } } }
             tbody { @for row in &table.rows { tr { @for (index, cell) in row.iter().enumerate() {
                 @match cell {
-                    TableCell::Text(text) => td class=[numeric(index)] { (text) },
-                    TableCell::Judged(text, good) => td class={ @if *good { "good " } @else { "bad " } (numeric(index).unwrap_or_default()) } { (text) },
-                    TableCell::Hash(text) => td.hash { (text) },
-                    TableCell::Interval(ends) => td { (interval(*ends)) },
+                    Cell::Text(text) => td class=[numeric(index)] { (text) },
+                    Cell::Judged(text, good) => td class={ @if *good { "good " } @else { "bad " } (numeric(index).unwrap_or_default()) } { (text) },
+                    Cell::Hash(text) => td.hash { (text) },
+                    Cell::Interval(ends) => td { (interval(*ends)) },
                 }
             } } } }
         } }
@@ -237,7 +239,7 @@ fn anchor(title: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::{Panel, Role, Series, Stroke};
+    use crate::document::{Panel, Role, Series, Stroke};
 
     #[test]
     fn a_page_holds_all_and_asks_for_nothing() {
@@ -245,19 +247,16 @@ mod tests {
         let ends_it = "</script><b>";
         let hides_its_end = "<!--<script>";
         let series = Series::new(ends_it, long(), long(), Role::Force, Stroke::Plain);
-        let chart = Chart {
-            panel: Panel {
-                title: ends_it.to_owned(),
-                series: vec![series],
-                ..Panel::default()
-            },
+        let chart = Panel {
+            title: ends_it.to_owned(),
+            series: vec![series],
             group: hides_its_end.to_owned(),
-            ..Chart::default()
+            ..Panel::default()
         };
-        let page = Page {
+        let page = Document {
             title: "A & B".to_owned(),
-            sections: vec![PageSection::new("All of it", vec![Block::Chart(chart)])],
-            ..Page::default()
+            sections: vec![Section::new("All of it", vec![Block::Panel(chart)])],
+            ..Document::default()
         };
         let text = html(&page);
         assert!(text.len() < 3_000_000, "{}", text.len());

@@ -26,6 +26,12 @@ pub struct Panel<'a> {
     pub bands: Vec<Band>,
     /// Vertical event lines.
     pub markers: Vec<Marker>,
+    /// Times that are shaded [s].
+    pub spans: Vec<[f64; 2]>,
+    /// Panels of one name are zoomed together; may be empty.
+    pub group: String,
+    /// Ends of the vertical axis, where what lies beyond would press the rest flat.
+    pub within: Option<[f64; 2]>,
 }
 
 /// The horizontal axis of a panel.

@@ -1,23 +1,10 @@
-//! A chart: a panel of a figure with its numbers, as the page's script takes it.
+//! A panel with its numbers, as the page's script takes it.
 
 use serde_json::{Value, json};
 
-use super::packed;
-use super::thin::kept;
-use crate::figure::{Horizontal, Panel, Series, Stroke};
-
-/// A chart.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Chart<'a> {
-    /// The drawn panel.
-    pub panel: Panel<'a>,
-    /// Times that are shaded [s].
-    pub spans: Vec<[f64; 2]>,
-    /// Charts of one name are zoomed together; may be empty.
-    pub group: String,
-    /// Ends of the vertical axis, where what lies beyond would press the rest flat.
-    pub within: Option<[f64; 2]>,
-}
+use super::super::packed;
+use super::super::thin::kept;
+use super::super::{Horizontal, Panel, Series, Stroke};
 
 /// A series with its own places, and how it is joined to the others.
 struct Drawn<'a> {
@@ -27,10 +14,10 @@ struct Drawn<'a> {
     values: Vec<f64>,
 }
 
-impl Chart<'_> {
+impl Panel<'_> {
     /// Data for the script, with at most about so many samples; and of how many they are.
-    pub(super) fn told(&self, most: usize) -> (Value, [usize; 2]) {
-        let panel = &self.panel;
+    pub(super) fn data(&self, most: usize) -> (Value, [usize; 2]) {
+        let panel = self;
         let mut drawn: Vec<Drawn<'_>> = Vec::new();
         let mut areas: Vec<[usize; 2]> = Vec::new();
         for series in &panel.series {
@@ -79,7 +66,7 @@ impl Chart<'_> {
             Horizontal::Time => "time [s]",
             Horizontal::Quantity(name) => name,
         };
-        let told = json!({
+        let data = json!({
             "x": x,
             "y": panel.vertical_label,
             "group": self.group,
@@ -91,19 +78,19 @@ impl Chart<'_> {
             "spans": self.spans.iter().map(|span| span.map(coarse)).collect::<Vec<_>>(),
             "within": self.within.map(|ends| ends.map(coarse)),
         });
-        (told, [kept.len(), places.len()])
+        (data, [kept.len(), places.len()])
     }
 
     /// Whether all that it shows are points.
     pub(super) fn is_cloud(&self) -> bool {
-        let mut series = self.panel.series.iter();
+        let mut series = self.series.iter();
         series.all(|series| series.stroke == Stroke::Points)
     }
 
     /// Numbers that its panel has, the places counted once.
     pub(super) fn numbers(&self) -> usize {
-        let lengths = self.panel.series.iter().map(|s| s.values.len());
-        lengths.max().unwrap_or(0) * (self.panel.series.len() + 1)
+        let lengths = self.series.iter().map(|s| s.values.len());
+        lengths.max().unwrap_or(0) * (self.series.len() + 1)
     }
 }
 
@@ -176,16 +163,13 @@ mod tests {
     use base64::engine::general_purpose::STANDARD;
 
     use super::*;
-    use crate::figure::Role;
+    use crate::document::Role;
 
-    fn chart(series: Vec<Series<'_>>) -> Chart<'_> {
-        Chart {
-            panel: Panel {
-                vertical_label: "force [N]".to_owned(),
-                series,
-                ..Panel::default()
-            },
-            ..Chart::default()
+    fn chart(series: Vec<Series<'_>>) -> Panel<'_> {
+        Panel {
+            vertical_label: "force [N]".to_owned(),
+            series,
+            ..Panel::default()
         }
     }
 
@@ -207,7 +191,7 @@ mod tests {
             signal(vec![1.0, 2.0, 3.0]),
             signal(vec![4.0, 5.0, f64::NAN]),
         ])
-        .told(100);
+        .data(100);
         assert_eq!(count, [3, 3]);
         assert_eq!(unpacked(&told["at"]), [0.0, 0.5, 1.0]);
         assert_eq!(unpacked(&told["series"][0]["values"]), [1.0, 2.0, 3.0]);
@@ -232,7 +216,7 @@ mod tests {
             Role::Measured,
             Stroke::Points,
         );
-        let (told, _) = chart(vec![band, cloud]).told(100);
+        let (told, _) = chart(vec![band, cloud]).data(100);
         assert_eq!(told["areas"], json!([[0, 1]]));
         let known = |column: usize| -> Vec<f32> {
             let mut values = unpacked(&told["series"][column]["values"]);
@@ -265,7 +249,7 @@ mod tests {
             )
         };
         let both = chart(vec![cloud("before", 0.61), cloud("after", 0.83)]);
-        let (told, [kept, of]) = both.told(1333);
+        let (told, [kept, of]) = both.data(1333);
         assert!(of == 4000 && kept.abs_diff(1333) < 20, "{kept} of {of}");
         let spread = |values: &[f64]| {
             let count = values.len() as f64;
