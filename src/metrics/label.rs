@@ -1,45 +1,19 @@
-//! Metrics for people: their names and units, and which matter most.
+//! Metrics of either kind of scenario for people: their names and units, and which matter most.
 
-use super::{BENCH_METRICS, METRICS, Metric};
+use super::catalogue::ranked;
+use super::{BenchSummary, Measured, Metric, Part, Summary};
 
-/// Numbers of a cell and of a bench, what matters most first; those that no run determines, and those for which there is no room, are left out.
-const OF_CELL: [&str; 8] = [
-    "force_mean_n",
-    "coefficient_of_variation_percent",
-    "largest_deviation_n",
-    "engagement_peak_n",
-    "stroke_margin_mm",
-    "settling_time_s",
-    "duration_s",
-    "path_error_rms_um",
-];
-/// What a job that finishes an edge is for, before all that.
-const OF_EDGE: [&str; 4] = [
-    "chamfer_leg_mean_mm",
-    "residual_burr_max_mm",
-    "out_of_tolerance_share_percent",
-    "duration_s",
-];
-/// The metric that only a finished edge has.
-pub const FINISHED: &str = "chamfer_leg_mean_mm";
-const OF_BENCH: [&str; 7] = [
-    "force_mean_n",
-    "coefficient_of_variation_percent",
-    "force_rms_error_percent",
-    "force_settling_time_s",
-    "impact_peak_n",
-    "stroke_margin_mm",
-    "regulator_delay_s",
-];
-
-/// Metrics of a bench, or of a cell that finishes an edge or follows one, that matter most, the first ones most.
-pub fn most_telling(is_bench: bool, is_finished: bool) -> Vec<&'static str> {
-    if is_bench {
-        return OF_BENCH.to_vec();
+/// Metrics of a bench, or of a cell, that matter most, the first ones most; of those a run has the ones that it determines.
+pub fn most_important(is_bench: bool) -> Vec<&'static str> {
+    fn names<S: Measured>() -> Vec<&'static str> {
+        let ranked = ranked(S::METRICS, |metric| metric.rank).into_iter();
+        ranked.map(|metric| metric.name).collect()
     }
-    let edge = if is_finished { &OF_EDGE[..] } else { &[] };
-    let others = OF_CELL.into_iter().filter(|name| !edge.contains(name));
-    edge.iter().copied().chain(others).collect()
+    if is_bench {
+        names::<BenchSummary>()
+    } else {
+        names::<Summary>()
+    }
 }
 
 /// Names of the metrics of a kind of scenario.
@@ -59,23 +33,32 @@ pub struct Label {
     pub unit: &'static str,
     /// Its meaning.
     pub meaning: &'static str,
+    /// Its definition.
+    pub definition: &'static str,
+    /// Part of the report.
+    pub part: Part,
+    /// Rank among the key facts, from 1.
+    pub fact: Option<u8>,
 }
 
-fn labelled<S>(metrics: &[Metric<S>]) -> Vec<Label> {
+fn labelled<S: Measured>() -> Vec<Label> {
     let label = |metric: &Metric<S>| Label {
         key: metric.name,
         name: metric.full_label(),
         unit: metric.shown_unit(),
         meaning: metric.meaning,
+        definition: metric.definition,
+        part: metric.part,
+        fact: metric.fact,
     };
-    metrics.iter().map(label).collect()
+    S::METRICS.iter().map(label).collect()
 }
 
 /// The metrics of benches, or of cells.
 pub fn labels(of_bench: bool) -> Vec<Label> {
     if of_bench {
-        labelled(BENCH_METRICS)
+        labelled::<BenchSummary>()
     } else {
-        labelled(METRICS)
+        labelled::<Summary>()
     }
 }

@@ -2,41 +2,17 @@
 
 use super::rows::{comparison, far_from_desired, printable, shown, tally};
 use super::text::Style;
-use crate::metrics::{BENCH_METRICS, BenchSummary, BoundCheck, LevelSummary, Metric};
+use crate::metrics::{BENCH_METRICS, BenchSummary, BoundCheck, LevelSummary, Metric, columns};
 use crate::quantity::optional;
 
-/// A column of the table of levels.
-pub struct LevelColumn {
-    /// Its heading.
-    pub name: &'static str,
-    /// Its unit.
-    pub unit: &'static str,
-    /// A level's value in that unit.
-    pub value: fn(&LevelSummary) -> Option<f64>,
-}
-
-const fn column(
-    name: &'static str,
-    unit: &'static str,
-    value: fn(&LevelSummary) -> Option<f64>,
-) -> LevelColumn {
-    LevelColumn { name, unit, value }
-}
-
-/// Columns on each command, in a row.
-#[rustfmt::skip]
-pub const LEVELS: [LevelColumn; 8] = [
-    column("at", "s", |level| Some(level.start_s)),
-    column("set", "bar", |level| Some(level.set_pressure_bar_gauge)),
-    column("outlet", "bar", |level| Some(level.regulator_pressure_bar_gauge)),
-    column("delay", "s", |level| level.regulator_delay_s),
-    column("force", "N", |level| level.force_mean_n),
-    column("read", "N", |level| level.measured_force_mean_n),
-    column("settled", "s", |level| level.force_settling_time_s),
-    column("stroke", "mm", |level| level.stroke_mm),
-];
 /// Letters of a column of the table of levels.
 const LEVEL_WIDTH: usize = 10;
+
+/// A level's values in the columns of the table.
+fn values(level: &LevelSummary) -> Vec<String> {
+    let value = |metric: &Metric<LevelSummary>| optional((metric.value)(level), metric.unit);
+    columns().map(|(_, metric)| value(metric)).collect()
+}
 
 /// Metrics that have a value, the number of the timing only if it was timed.
 fn rows(summary: &BenchSummary) -> impl Iterator<Item = (&'static Metric<BenchSummary>, f64)> {
@@ -73,13 +49,12 @@ pub fn bench_text(
             let cell = |text: &String| format!("{text:>LEVEL_WIDTH$}");
             texts.iter().map(cell).collect()
         };
-        let names = LEVELS.iter().map(|column| column.name.to_owned());
+        let names = columns::<LevelSummary>().map(|(name, _)| name.to_owned());
         line(style.faint(&cells(names.collect())));
-        let units = LEVELS.iter().map(|column| format!("[{}]", column.unit));
+        let units = columns::<LevelSummary>().map(|(_, metric)| format!("[{}]", metric.unit));
         line(style.faint(&cells(units.collect())));
         for level in &summary.levels {
-            let value = |column: &LevelColumn| optional((column.value)(level), column.unit);
-            line(cells(LEVELS.iter().map(value).collect()));
+            line(cells(values(level)));
         }
         line(rule.clone());
     }
@@ -125,12 +100,12 @@ pub fn bench_markdown(title: &str, summary: &BenchSummary, verdicts: &[BoundChec
         out.push_str(&format!("**{far}**\n\n"));
     }
     if !untimed.levels.is_empty() {
-        let heading = |column: &LevelColumn| format!("{}, {}", column.name, column.unit);
-        out.push_str(&row(LEVELS.iter().map(heading).collect()));
-        out.push_str(&row(LEVELS.iter().map(|_| "---:".to_owned()).collect()));
+        let columns = || columns::<LevelSummary>();
+        let headings = columns().map(|(name, metric)| format!("{name}, {}", metric.unit));
+        out.push_str(&row(headings.collect()));
+        out.push_str(&row(columns().map(|_| "---:".to_owned()).collect()));
         for level in &untimed.levels {
-            let value = |column: &LevelColumn| optional((column.value)(level), column.unit);
-            out.push_str(&row(LEVELS.iter().map(value).collect()));
+            out.push_str(&row(values(level)));
         }
         out.push('\n');
     }

@@ -2,9 +2,9 @@
 //!
 //! Timing is left out, so that the same scenario gives the same text.
 
-use super::rows::{PASSES, ReportRow, comparison, rows, shown, tally};
+use super::rows::{ReportRow, comparison, rows, shown, tally};
 use super::text::far_of;
-use crate::metrics::{BoundCheck, ForceTenth, PassSummary, Summary};
+use crate::metrics::{BoundCheck, ForceTenth, PassSummary, Summary, columns};
 use crate::quantity::column;
 
 /// The results of a run as Markdown, with the scenario's expectations first.
@@ -23,7 +23,7 @@ pub fn markdown(title: &str, summary: &Summary, verdicts: &[BoundCheck]) -> Stri
         out.push_str(&format!("\n**{}**\n", escape(&far)));
     }
     let rows = rows(&untimed);
-    for part in rows.chunk_by(|before, after| before.part == after.part) {
+    for part in rows.chunk_by(|before, after| before.part() == after.part()) {
         results(&mut out, part);
     }
     passes(&mut out, &untimed.passes);
@@ -51,12 +51,12 @@ fn row(out: &mut String, cells: &[&str]) {
     out.push_str(&format!("| {} |\n", cells.join(" | ")));
 }
 
-fn results(out: &mut String, part: &[ReportRow]) {
+fn results(out: &mut String, part: &[ReportRow<Summary>]) {
     let Some(first) = part.first() else {
         return;
     };
     out.push('\n');
-    row(out, &[first.part, "value", "unit", ""]);
+    row(out, &[first.part(), "value", "unit", ""]);
     row(out, &["---", "---:", "---", "---"]);
     for entry in part {
         let (label, note) = (escape(entry.metric.label), escape(&entry.note));
@@ -70,16 +70,13 @@ fn passes(out: &mut String, passes: &[PassSummary]) {
         return;
     }
     out.push_str("\n## Passes\n\n");
-    let names = PASSES
-        .iter()
-        .map(|column| format!("{}, {}", column.name, column.unit));
+    let columns = || columns::<PassSummary>();
+    let names = columns().map(|(name, metric)| format!("{name}, {}", metric.unit));
     let heads: Vec<String> = std::iter::once("pass".to_owned()).chain(names).collect();
     row(out, &heads.iter().map(String::as_str).collect::<Vec<_>>());
-    row(out, &["---:"; PASSES.len() + 1]);
+    row(out, &vec!["---:"; columns().count() + 1]);
     for pass in passes {
-        let values = PASSES
-            .iter()
-            .map(|column| escape(&shown((column.value)(pass), column.unit)));
+        let values = columns().map(|(_, metric)| escape(&shown((metric.value)(pass), metric.unit)));
         let cells: Vec<String> = std::iter::once(pass.pass.to_string())
             .chain(values)
             .collect();

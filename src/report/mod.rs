@@ -7,7 +7,7 @@ mod rows;
 mod test_summaries;
 mod text;
 
-pub use bench::{LEVELS, LevelColumn, bench_markdown, bench_text};
+pub use bench::{bench_markdown, bench_text};
 pub use markdown::markdown;
-pub use rows::{PASSES, PassColumn, drives, far_from_desired, shown};
+pub use rows::{drives, far_from_desired, shown};
 pub use text::{Style, text};

@@ -1,89 +1,26 @@
 //! The rows of the reports: which metrics, in which parts, with what beside them.
 
 use crate::metrics::{
-    BoundCheck, JointTorqueShare, Metric, NARROW_BAND, PassSummary, Summary, WIDE_BAND, metric,
+    BoundCheck, JointTorqueShare, Measured, Metric, NARROW_BAND, Summary, WIDE_BAND,
 };
 use crate::quantity::{self, DIGITS, change, significant, with_unit};
 
-/// Metrics that only a run with a tool that turns has.
-const OF_A_TURNING_TOOL: [&str; 12] = [
-    "burr_before_max_mm",
-    "residual_burr_max_mm",
-    "chamfer_leg_mean_mm",
-    "chamfer_leg_standard_deviation_mm",
-    "out_of_tolerance_share_percent",
-    "ends_out_of_tolerance_share_percent",
-    "ends_chamfer_leg_max_mm",
-    "ends_residual_burr_max_mm",
-    "section_variation_percent",
-    "removed_volume_mm3",
-    "spindle_power_max_w",
-    "tool_wear_kj",
-];
-
-/// Parts of a report and the metrics in each, by key: what the job is for, then how it was done.
-const PARTS: [(&str, &[&str]); 8] = [
-    ("Edge", &OF_A_TURNING_TOOL),
-    ("Time", &["duration_s"]),
-    (
-        "Force",
-        &[
-            "force_mean_n",
-            "force_standard_deviation_n",
-            "coefficient_of_variation_percent",
-            "force_rms_error_n",
-            "largest_deviation_n",
-            "within_5_percent_share_percent",
-            "within_10_percent_share_percent",
-            "loss_of_contact_share_percent",
-        ],
-    ),
-    (
-        "Peaks",
-        &[
-            "force_peak_approach_n",
-            "force_peak_engage_n",
-            "force_peak_follow_n",
-            "force_peak_retract_n",
-        ],
-    ),
-    ("Touch", &["engagement_peak_n", "settling_time_s"]),
-    ("Stroke", &["stroke_used_mm", "stroke_margin_mm"]),
-    (
-        "Path",
-        &[
-            "path_length_mm",
-            "path_error_rms_um",
-            "path_error_max_um",
-            "path_lag_rms_um",
-            "path_lag_max_um",
-        ],
-    ),
-    (
-        "Run",
-        &[
-            "friction_force_mean_n",
-            "joint_torque_share_percent",
-            "drives_saturated_s",
-            "air_mass_balance_relative",
-            "real_time_factor",
-        ],
-    ),
-];
-
 /// One row: a metric, its value, and what a reader wants beside it.
-pub(super) struct ReportRow {
-    /// Part of the report.
-    pub(super) part: &'static str,
+pub(super) struct ReportRow<S: 'static> {
     /// The metric.
-    pub(super) metric: &'static Metric<Summary>,
+    pub(super) metric: &'static Metric<S>,
     /// Its value in the metric's unit.
     pub(super) value: Option<f64>,
     /// Its meaning in short, or a fact that belongs to it.
     pub(super) note: String,
 }
 
-impl ReportRow {
+impl<S> ReportRow<S> {
+    /// Heading of its part of the report.
+    pub(super) fn part(&self) -> &'static str {
+        self.metric.part.title()
+    }
+
     /// The value as it is printed.
     pub(super) fn text(&self) -> String {
         shown(self.value, self.unit())
@@ -125,135 +62,21 @@ pub fn far_from_desired(desired: f64, mean: f64, rms_error_percent: f64) -> Opti
     ))
 }
 
-/// The rows in order; without that of the timing if there is none.
-pub(super) fn rows(summary: &Summary) -> Vec<ReportRow> {
-    let row = |part, name: &str| {
-        if name == "real_time_factor" && summary.timing.is_none() {
-            return None;
-        }
-        if OF_A_TURNING_TOOL.contains(&name) && summary.tool_wear_kj.is_none() {
-            return None;
-        }
-        let metric = metric(name)?;
-        Some(ReportRow {
-            part,
+/// The rows in the order of the parts.
+pub(super) fn rows<S: Measured>(summary: &S) -> Vec<ReportRow<S>> {
+    let row = |metric: &'static Metric<S>| {
+        let value = (metric.value)(summary);
+        let shown = metric.has_row && (value.is_some() || !metric.is_optional);
+        shown.then(|| ReportRow {
             metric,
-            value: (metric.value)(summary),
-            note: fact(metric.name, summary).unwrap_or_else(|| metric.meaning.to_owned()),
+            value,
+            note: printable(&metric.remark(summary)),
         })
     };
-    PARTS
-        .iter()
-        .flat_map(|&(part, names)| names.iter().filter_map(move |name| row(part, name)))
-        .collect()
+    let mut rows: Vec<_> = S::METRICS.iter().filter_map(row).collect();
+    rows.sort_by_key(|row| row.metric.part);
+    rows
 }
-
-/// Note beside a value that says more than its meaning.
-fn fact(name: &str, summary: &Summary) -> Option<String> {
-    let of = |value, unit| with_unit(value, unit);
-    Some(match name {
-        "force_mean_n" => {
-            let desired = summary.desired_force_n;
-            let off = 100.0 * (summary.force_mean_n? - desired) / desired;
-            format!("desired {} ({})", of(desired, "N"), change(off))
-        }
-        "force_rms_error_n" => format!(
-            "{} of the desired force",
-            of(summary.force_rms_error_percent?, "%")
-        ),
-        "engagement_peak_n" => match summary.engagement_overshoot_percent? {
-            0.0 => "not above the desired force".to_owned(),
-            over => format!("{} above desired", of(over, "%")),
-        },
-        "chamfer_leg_mean_mm" => {
-            let (least, most) = (summary.chamfer_leg_min_mm?, summary.chamfer_leg_max_mm?);
-            let least = quantity::number(least, "mm");
-            format!("from {least} to {}", of(most, "mm"))
-        }
-        "residual_burr_max_mm" => {
-            let share = of(summary.residual_burr_share_percent?, "%");
-            format!("too much of it on {share}")
-        }
-        "removed_volume_mm3" => {
-            let rate = of(summary.removal_rate_mean_mm3_per_s?, "mm3/s");
-            format!("at {rate} while cutting")
-        }
-        "stroke_used_mm" => {
-            let (least, greatest) = (summary.stroke_min_mm?, summary.stroke_max_mm?);
-            let least = quantity::number(least, "mm");
-            format!("from {least} to {}", of(greatest, "mm"))
-        }
-        "path_length_mm" => {
-            format!("at {} on average", of(summary.feed_mean_mm_per_s?, "mm/s"))
-        }
-        "joint_torque_share_percent" => {
-            format!(
-                "largest, at {}",
-                printable(summary.most_loaded_joint.as_ref()?)
-            )
-        }
-        "drives_saturated_s" => {
-            let first = summary
-                .joints
-                .iter()
-                .filter_map(|joint| Some((joint, joint.saturated_from_s?)));
-            let (joint, from) = first.min_by(|a, b| a.1.total_cmp(&b.1))?;
-            format!("{}, {}", printable(&joint.joint), of(from, "s"))
-        }
-        "force_peak_follow_n" if summary.passes.len() > 1 => "of the first pass".to_owned(),
-        "out_of_tolerance_share_percent" => format!(
-            "with its ends {}",
-            of(summary.whole_edge_out_of_tolerance_share_percent?, "%")
-        ),
-        "ends_out_of_tolerance_share_percent" => {
-            format!("{} at either end", of(summary.ends_length_mm?, "mm"))
-        }
-        "ends_chamfer_leg_max_mm" => {
-            let (least, most) = (
-                summary.ends_chamfer_leg_min_mm?,
-                summary.ends_chamfer_leg_max_mm?,
-            );
-            format!(
-                "from {} to {}",
-                quantity::number(least, "mm"),
-                of(most, "mm")
-            )
-        }
-        "duration_s" => format!("following {} of it", of(summary.follow_duration_s?, "s")),
-        "real_time_factor" => format!("computed in {}", of(summary.timing?.wall_time_s, "s")),
-        _ => return None,
-    })
-}
-
-/// A column of the table of passes.
-pub struct PassColumn {
-    /// Its heading.
-    pub name: &'static str,
-    /// Its unit.
-    pub unit: &'static str,
-    /// A pass's value in that unit.
-    pub value: fn(&PassSummary) -> Option<f64>,
-}
-
-const fn pass(
-    name: &'static str,
-    unit: &'static str,
-    value: fn(&PassSummary) -> Option<f64>,
-) -> PassColumn {
-    PassColumn { name, unit, value }
-}
-
-/// What a run of several passes says of each, in a row.
-#[rustfmt::skip]
-pub const PASSES: [PassColumn; 7] = [
-    pass("desired", "N", |pass| Some(pass.desired_force_n)),
-    pass("mean", "N", |pass| pass.force_mean_n),
-    pass("SD", "N", |pass| pass.force_standard_deviation_n),
-    pass("RMS error", "%", |pass| pass.force_rms_error_percent),
-    pass("in 5 %", "%", |pass| pass.within_5_percent_share_percent),
-    pass("largest", "N", |pass| pass.force_peak_follow_n),
-    pass("feed", "mm/s", |pass| pass.feed_mean_mm_per_s),
-];
 
 /// Drives that were at their limit, with time and duration; none if none was.
 #[must_use]
@@ -325,25 +148,17 @@ mod tests {
     use serde_json::Value;
 
     #[test]
-    fn every_row_names_a_metric() {
-        for name in PARTS.iter().flat_map(|(_, names)| names.iter()) {
-            assert!(metric(name).is_some(), "{name}");
-        }
-        let count: usize = PARTS.iter().map(|(_, names)| names.len()).sum();
-        // A tool that turns; without one its part is left out.
-        let untimed = Summary {
+    fn parts_stand_together_in_their_order_and_what_is_absent_from_the_file_is_no_row() {
+        let bare = rows(&Summary::default());
+        assert!(bare.iter().all(|row| !row.metric.is_optional));
+        let full = rows(&Summary {
             tool_wear_kj: Some(1.0),
-            ..Summary::default()
-        };
-        assert_eq!(rows(&Summary::default()).len(), count - 13);
-        let timed = Summary {
             timing: Some(Timing::new(1.0, 1.0)),
-            ..untimed.clone()
-        };
-        assert_eq!(
-            (rows(&untimed).len(), rows(&timed).len()),
-            (count - 1, count)
-        );
+            ..Summary::default()
+        });
+        assert_eq!(full.len(), bare.len() + 2);
+        assert!(full.is_sorted_by_key(|row| row.metric.part));
+        assert_eq!(full[0].part(), "Edge");
     }
 
     // Catches: a number that is taken from another field. In most runs some fields are equal, here none are.

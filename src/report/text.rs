@@ -2,10 +2,8 @@
 
 use std::fmt::Write;
 
-use super::rows::{
-    PASSES, PassColumn, ReportRow, comparison, far_from_desired, printable, rows, shown, tally,
-};
-use crate::metrics::{BoundCheck, ForceTenth, PassSummary, Summary};
+use super::rows::{ReportRow, comparison, far_from_desired, printable, rows, shown, tally};
+use crate::metrics::{BoundCheck, ForceTenth, Metric, PassSummary, Summary, columns};
 use crate::quantity::{UNKNOWN, column};
 
 const WIDTH: usize = 80;
@@ -49,8 +47,8 @@ pub fn text(title: &str, summary: &Summary, verdicts: &[BoundCheck], style: Styl
     let rows = rows(summary);
     let mut part = "";
     for row in &rows {
-        let opening = if row.part == part { "" } else { row.part };
-        part = row.part;
+        let opening = if row.part() == part { "" } else { row.part() };
+        part = row.part();
         line(&mut out, opening, row, style);
     }
     tenths(&mut out, &summary.force_by_tenth, style);
@@ -83,7 +81,7 @@ fn push(out: &mut String, line: &str) {
     out.push('\n');
 }
 
-fn line(out: &mut String, opening: &str, row: &ReportRow, style: Style) {
+fn line(out: &mut String, opening: &str, row: &ReportRow<Summary>, style: Style) {
     let text = format!(
         "{} {:<24} {:>9} {:<4}  {}",
         style.heading(&format!("{opening:<7}")),
@@ -125,18 +123,17 @@ fn passes(out: &mut String, passes: &[PassSummary], style: Style) {
     }
     let cells =
         |texts: Vec<String>| -> String { texts.iter().map(|text| format!("{text:>10}")).collect() };
-    let of = |value: fn(&PassColumn) -> &'static str| {
-        let texts = PASSES.iter().map(|column| value(column).to_owned());
+    let heads = |text: fn(&'static str, &Metric<PassSummary>) -> &'static str| {
+        let texts = columns().map(|(name, metric)| text(name, metric).to_owned());
         style.faint(&cells(texts.collect()))
     };
-    push(
-        out,
-        &format!("{}{}", style.heading("Pass   "), of(|column| column.name)),
-    );
-    push(out, &format!("{:<7}{}", "", of(|column| column.unit)));
+    let names = heads(|name, _| name);
+    push(out, &format!("{}{names}", style.heading("Pass   ")));
+    let units = heads(|_, metric| metric.unit);
+    push(out, &format!("{:<7}{units}", ""));
     for pass in passes {
-        let value = |column: &PassColumn| shown((column.value)(pass), column.unit);
-        let texts = PASSES.iter().map(value).collect();
+        let value = |metric: &Metric<PassSummary>| shown((metric.value)(pass), metric.unit);
+        let texts = columns().map(|(_, metric)| value(metric)).collect();
         push(out, &format!("{:<7}{}", pass.pass, cells(texts)));
     }
 }

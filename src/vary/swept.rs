@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::sweep::Sweep;
 use super::{QUANTILES, Varied, rank_correlation, shares_of_variance};
-use crate::metrics::{FINISHED, Label, labels, metric_names, most_telling};
+use crate::metrics::{Label, labels, metric_names, most_important};
 use crate::quantity::spoken::{number, spoken};
 use crate::quantity::{column, counted};
 use crate::recording::RecordingError;
@@ -284,8 +284,7 @@ impl Swept {
     /// Metrics that differ and matter most.
     pub fn told(&self) -> impl Iterator<Item = (Label, &MetricOfRuns)> {
         let labels = self.labels();
-        let is_finished = self.metrics.iter().any(|metric| metric.name == FINISHED);
-        let names = most_telling(self.is_bench, is_finished);
+        let names = most_important(self.is_bench);
         names.into_iter().filter_map(move |name| {
             let metric = self.metrics.iter().find(|metric| metric.name == name)?;
             let label = labels.iter().find(|label| label.key == name)?;

@@ -13,12 +13,14 @@ use super::provenance::provenance_of;
 use super::run_result::RunResult;
 use super::signals::{along_the_path, joints, signals};
 use crate::document::{Block, Cell, Document, Fact, Section, Table, Tone, html};
-use crate::metrics::Label;
-use crate::metrics::{LevelSummary, NARROW_BAND, PassSummary, WIDE_BAND};
+use crate::metrics::{
+    Label, LevelSummary, METRICS, Measured, Metric, NARROW_BAND, Part, PassSummary, WIDE_BAND,
+    columns,
+};
 use crate::quantity::{UNKNOWN, change, optional, with_unit};
 use crate::recording::Recording;
 use crate::recording::csv::EdgeProfile;
-use crate::report::{LEVELS, LevelColumn, PASSES, PassColumn, far_from_desired, shown};
+use crate::report::{far_from_desired, shown};
 
 /// The page of a run.
 pub(in super::super) fn of_run(run: &RunResult<'_>) -> String {
@@ -200,26 +202,8 @@ fn ends(bound: &Value) -> String {
     ends.join(", ")
 }
 
-/// Metrics that stand at the top after the force, where a run has them.
-const FACTS: [&str; 7] = [
-    "coefficient_of_variation_percent",
-    "within_5_percent_share_percent",
-    "force_rms_error_percent",
-    "regulator_delay_s",
-    "force_settling_time_s",
-    "force_peak_n",
-    "stroke_margin_mm",
-];
 /// Facts about the force beside those about a finished edge.
 const FORCE_BESIDE: usize = 2;
-/// Phases of a job and the key of the largest force of each.
-const PEAKS: [(&str, &str); 4] = [
-    ("approach", "force_peak_approach_n"),
-    ("engage", "force_peak_engage_n"),
-    ("follow", "force_peak_follow_n"),
-    ("retract", "force_peak_retract_n"),
-];
-
 fn facts(run: &RunResult<'_>) -> Vec<Fact> {
     let metrics = run.metrics();
     let fact = |key: &str| {
@@ -230,7 +214,10 @@ fn facts(run: &RunResult<'_>) -> Vec<Fact> {
             remark: label.meaning.to_owned(),
         })
     };
-    let others = FACTS.iter().filter_map(|key| fact(key)).take(4);
+    let mut ranked: Vec<&Label> = metrics.iter().map(|(label, _)| label).collect();
+    ranked.retain(|label| label.fact.is_some());
+    ranked.sort_by_key(|label| label.fact);
+    let others = ranked.iter().filter_map(|label| fact(label.key)).take(4);
     let edge = [
         chamfer(run),
         fact("out_of_tolerance_share_percent"),
@@ -325,8 +312,8 @@ fn mean(run: &RunResult<'_>) -> Option<Fact> {
 
 /// The largest force of all phases.
 fn peak(run: &RunResult<'_>) -> Option<Fact> {
-    let peaks = PEAKS.iter();
-    let peaks = peaks.filter_map(|(phase, key)| Some((phase, run.metric(key)?)));
+    let peaks = METRICS.iter().filter(|metric| metric.part == Part::Peaks);
+    let peaks = peaks.filter_map(|metric| Some((metric.column?, run.metric(metric.name)?)));
     let (phase, most) = peaks.max_by(|a, b| a.1.total_cmp(&b.1))?;
     Some(Fact {
         name: "largest force".to_owned(),
@@ -365,18 +352,23 @@ fn pictures<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
     (!blocks.is_empty()).then(|| Section::new(title, blocks))
 }
 
+/// Headings of a table with a row for each of these.
+fn headings<S: Measured>() -> Vec<String> {
+    let heading = |(name, metric): (_, &Metric<S>)| format!("#{name}, {}", metric.unit);
+    columns().map(heading).collect()
+}
+
 /// Result of each command of a bench.
 fn levels<'a>(run: &RunResult<'_>) -> Option<Section<'a>> {
     let levels = run.document["summary"]["levels"].clone();
     let levels: Vec<LevelSummary> = serde_json::from_value(levels).ok()?;
-    let names: Vec<String> = LEVELS
-        .iter()
-        .map(|column| format!("#{}, {}", column.name, column.unit))
-        .collect();
+    let names = headings::<LevelSummary>();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let row = |level: &LevelSummary| {
-        let cell = |column: &LevelColumn| Cell::from(optional((column.value)(level), column.unit));
-        LEVELS.iter().map(cell).collect()
+        let cell = |metric: &Metric<LevelSummary>| {
+            Cell::from(optional((metric.value)(level), metric.unit))
+        };
+        columns().map(|(_, metric)| cell(metric)).collect()
     };
     let rows: Vec<Vec<Cell>> = levels.iter().map(row).collect();
     let caption = "Steady values of each command, up to the next or to where something else begins to move; settled: until the force stays within 5 % of its change.";
@@ -395,16 +387,14 @@ fn passes<'a>(run: &'a RunResult<'_>) -> Option<Section<'a>> {
     if passes.len() < 2 {
         return None;
     }
-    let names = PASSES
-        .iter()
-        .map(|column| format!("#{}, {}", column.name, column.unit));
+    let names = headings::<PassSummary>().into_iter();
     let names: Vec<String> = std::iter::once("#pass".to_owned()).chain(names).collect();
     let row = |pass: &PassSummary| {
-        let value = |column: &PassColumn| Cell::from(shown((column.value)(pass), column.unit));
+        let value =
+            |metric: &Metric<PassSummary>| Cell::from(shown((metric.value)(pass), metric.unit));
         let number = Cell::from(pass.pass.to_string());
-        std::iter::once(number)
-            .chain(PASSES.iter().map(value))
-            .collect()
+        let values = columns().map(|(_, metric)| value(metric));
+        std::iter::once(number).chain(values).collect()
     };
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let caption = "Each pass along the edge, against its own desired force; the other numbers of the force are those of the first.";

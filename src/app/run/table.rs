@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::super::error::ExitCode;
 use super::settings::{Variant, short};
-use crate::metrics::{BENCH_METRICS, FINISHED, METRICS, most_telling};
+use crate::metrics::{labels, most_important};
 use crate::quantity::column;
 use crate::quantity::spoken::spoken;
 
@@ -151,17 +151,17 @@ fn varied(runs: &[Done]) -> Vec<Column> {
 /// A column for each number that a run determines.
 fn metrics(runs: &[Done]) -> Vec<Column> {
     let bench = runs.iter().any(|run| run.document["kind"] == "bench");
-    let finished = |run: &Done| run.document["summary"][FINISHED].is_number();
-    let names = most_telling(bench, runs.iter().any(finished));
+    let labels = labels(bench);
     let heading = |name: &str| {
-        let of_bench = BENCH_METRICS.iter().find(|metric| metric.name == name);
-        let of_bench = of_bench.map(|metric| (metric.full_label(), metric.unit));
-        let of_cell = METRICS.iter().find(|metric| metric.name == name);
-        let of_cell = of_cell.map(|metric| (metric.full_label(), metric.unit));
-        let (label, unit) = if bench { of_bench } else { of_cell }?;
+        let label = labels.iter().find(|label| label.key == name)?;
         // A heading of two lines, as the others.
-        let label = label.replace("coefficient of variation", "variation");
-        Some((format!("{label} [{unit}]"), unit))
+        let name = label.name.replace("coefficient of variation", "variation");
+        let unit = if label.unit.is_empty() {
+            "1"
+        } else {
+            label.unit
+        };
+        Some((format!("{name} [{unit}]"), unit))
     };
     let of = |name: &str| {
         let value = |run: &Done| run.document["summary"][name].as_f64();
@@ -170,7 +170,7 @@ fn metrics(runs: &[Done]) -> Vec<Column> {
         let (heading, unit) = heading(name)?;
         Some(Column::new(&heading, column(&values, unit)))
     };
-    names.into_iter().filter_map(of).collect()
+    most_important(bench).into_iter().filter_map(of).collect()
 }
 
 fn word(run: &Done) -> &'static str {
