@@ -53,7 +53,7 @@ fn a_part_in_the_robot_s_base_is_refused_by_name() {
     let mut typed = scenario("plate_edge_ideal");
     typed.workpiece.world_from_part.translation = DVec3::new(0.75e-3, 0.0, 0.05);
     let error = refusal(typed);
-    let CellError::Standing { names, depth, .. } = &error else {
+    let CellError::Penetration { names, depth, .. } = &error else {
         panic!("{error}");
     };
     assert!(

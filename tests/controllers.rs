@@ -117,7 +117,11 @@ fn moved(law: ForceLaw, frequency: f64, sensing: &SensingParameters) -> Errors {
 }
 
 /// The bench with a surface that stands still and these desired forces: times [s] and forces [N].
-fn standing(law: ForceLaw, sensing: &SensingParameters, forces: &[(f64, f64)]) -> BenchScenario {
+fn contact_bench(
+    law: ForceLaw,
+    sensing: &SensingParameters,
+    forces: &[(f64, f64)],
+) -> BenchScenario {
     let mut bench = moving_surface();
     if let LoadScenario::Contact { motion, .. } = &mut bench.load {
         *motion = None;
@@ -191,7 +195,7 @@ fn a_step_of_the_desired_force_settles_no_sooner_than_the_regulator_can() {
     println!("| controller | overshoot | settling, at best {least:.3} s |");
     let found = LAWS.map(|(name, law)| {
         let forces = [(0.5, 100.0), (STEP, 200.0)];
-        let bench = standing(law, &moving_surface().sensing, &forces);
+        let bench = contact_bench(law, &moving_surface().sensing, &forces);
         let after = Errors::of(&record(bench), 200.0, [STEP, 6.0]);
         let (overshoot, settling) = response(&after, 5.0);
         println!("| {name} | {overshoot:.1} % | {} |", seconds(settling));
@@ -271,7 +275,7 @@ fn in_the_cell_each_takes_out_the_friction() {
 fn behind_the_papers_chain_none_diverges() {
     // The load cell reads 20.8 % too much, so 150 N are read at 124 N. RC of 0.1 s, 8 and 10 bits, 100 samples a second.
     for (name, law) in LAWS {
-        let mut bench = standing(law, &SensingParameters::paper(), &[(0.5, DESIRED)]);
+        let mut bench = contact_bench(law, &SensingParameters::paper(), &[(0.5, DESIRED)]);
         bench.controller.period = 0.01;
         let after = Errors::of(&record(bench), DESIRED / 1.208, [4.0, 6.0]);
         println!("{name}: {:.2} N, {:.2} N", after.rms(), after.largest());

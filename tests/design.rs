@@ -423,9 +423,9 @@ fn draws_at_the_chosen_design_are_the_same_on_any_number_of_threads() {
     let page = String::from_utf8(first.0[2].clone()).unwrap();
     assert!(page.contains("Robustness") && page.contains("normal, mean 8, standard deviation 0.5"));
     // The bench's device has values that nobody has measured in public.
-    let judged = result["judged"].as_array().unwrap();
-    let is_judged = |key: &str| judged.iter().any(|value| value["key"] == key);
-    assert!(is_judged("device.supply_pressure_bar_gauge") && !is_judged("device.bore_mm"));
+    let assumed = result["judged"].as_array().unwrap();
+    let is_assumed = |key: &str| assumed.iter().any(|value| value["key"] == key);
+    assert!(is_assumed("device.supply_pressure_bar_gauge") && !is_assumed("device.bore_mm"));
     assert!(page.contains("These numbers rest on values"));
     // What a draw would be refused for is told before anything is searched.
     bench.replace("study.toml", "max = 40", "max = 40000");

@@ -237,7 +237,7 @@ fn all_goes_on_past_a_bad_case_and_resumes() {
     case_files(&bench, "cases/case-3", "", Dirt::None);
     let finished = without_time(&bench.path("out/case-10/diagnosis.json"));
     std::fs::remove_file(bench.path("out/case-10/diagnosis.json")).unwrap();
-    let standing = std::fs::read(bench.path("out/case-2/diagnosis.json")).unwrap();
+    let existing = std::fs::read(bench.path("out/case-2/diagnosis.json")).unwrap();
     let outcome = diagnose(
         &bench,
         &["cases", "--all", "--out", "out", "--resume", "--jobs", "1"],
@@ -249,7 +249,7 @@ fn all_goes_on_past_a_bad_case_and_resumes() {
         outcome.out
     );
     assert_eq!(
-        standing,
+        existing,
         std::fs::read(bench.path("out/case-2/diagnosis.json")).unwrap()
     );
     // Another number of threads, the same result.

@@ -104,9 +104,9 @@ fn a_name_that_is_none_is_refused_with_the_nearest() {
         assert!(!bench.path("picture.svg").exists());
     }
     bench.write("picture.svg", "mine");
-    let standing = bench.idc(&["effects", "burr", "--out", "picture.svg"], &[]);
-    assert_eq!(standing.code, 2);
-    assert!(standing.err.contains("--force"), "{}", standing.err);
+    let existing = bench.idc(&["effects", "burr", "--out", "picture.svg"], &[]);
+    assert_eq!(existing.code, 2);
+    assert!(existing.err.contains("--force"), "{}", existing.err);
 }
 
 /// The entry that a page says to write into a file is what a file takes.
@@ -163,11 +163,11 @@ fn the_gallery_is_what_the_program_makes() {
         assert!(size < 25_000, "{file}: {size} bytes");
         pictures.insert(format!("{}.svg", name(effect)));
     }
-    let standing: BTreeSet<String> = std::fs::read_dir(project("docs/pictures/effects"))
+    let existing: BTreeSet<String> = std::fs::read_dir(project("docs/pictures/effects"))
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();
-    assert_eq!(standing, pictures);
+    assert_eq!(existing, pictures);
     // The eye sees what each is about.
     let mut told = 0;
     for line in made.out.lines() {

@@ -14,7 +14,7 @@ fn misplaced(shift_mm: f64) -> Bench {
 }
 
 /// A part that stands out [m] by more than the check knows, with a working stroke [mm].
-fn standing_out(shift_m: f64, working_stroke_mm: f64) -> Bench {
+fn protruding(shift_m: f64, working_stroke_mm: f64) -> Bench {
     let bench = Bench::new("plate_edge_ideal");
     let stroke = format!("[process]\nworking_stroke_mm = {working_stroke_mm}");
     bench.replace("scenario.toml", "[process]", &stroke);
@@ -97,7 +97,7 @@ fn drawn_strokes(bench: &Bench) -> usize {
 
 #[test]
 fn a_part_nearer_than_the_stroke_allows() {
-    let bench = standing_out(0.02, 15.0);
+    let bench = protruding(0.02, 15.0);
     let outcome = bench.run();
     let reason = stopped(&outcome);
     for words in [
@@ -120,7 +120,7 @@ fn a_part_nearer_than_the_stroke_allows() {
 
 #[test]
 fn a_part_farther_than_the_stroke_allows() {
-    let bench = standing_out(-0.02, 35.0);
+    let bench = protruding(-0.02, 35.0);
     let outcome = bench.run();
     let reason = stopped(&outcome);
     for words in [

@@ -35,10 +35,10 @@ pub(super) fn kinds(scenario: &Scenario, refusal: &CellError) -> Vec<Kind> {
 fn of_refusal(error: &CellError) -> Vec<Kind> {
     match error {
         CellError::Plan { source, .. } => of_plan(source),
-        CellError::Standing { names, .. } if names.iter().any(|name| name == "part") => {
+        CellError::Penetration { names, .. } if names.iter().any(|name| name == "part") => {
             vec![Kind::PartMoved, Kind::PartTurned, Kind::BaseMoved]
         }
-        CellError::Standing { .. } => vec![Kind::BaseMoved],
+        CellError::Penetration { .. } => vec![Kind::BaseMoved],
         CellError::ToolDoesNotCut { .. } | CellError::ConeOffEdge { .. } => vec![Kind::Spindle],
         CellError::SpindleStalls { .. } => vec![Kind::LessForce, Kind::SpindleTorque],
         CellError::Weight { .. } => vec![

@@ -13,7 +13,7 @@ use crate::scenario::KeyValue;
 
 pub use places::{anywhere, pose_edits};
 pub use remedy::{Advice, Remedy};
-pub use trial::{Effort, Manner, RunOutcome, Trial};
+pub use trial::{Effort, RunOptions, RunOutcome, Trial};
 
 /// Changes that are made one after the other, where the first ends one refusal and meets another.
 const AFTER_ANOTHER: usize = 3;

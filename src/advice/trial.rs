@@ -95,7 +95,7 @@ pub struct Trial<'a> {
 }
 
 /// How changes are tried.
-pub struct Manner<'a> {
+pub struct RunOptions<'a> {
     /// Runs a cell; none where nothing could be measured.
     pub runs: &'a (dyn Fn(&Cell) -> Option<RunOutcome> + Sync),
     /// Is told what is looked for.
@@ -111,14 +111,14 @@ impl<'a> Trial<'a> {
         template: &'a ScenarioTemplate,
         given: &'a [KeyValue],
         effort: Effort,
-        manner: &Manner<'a>,
+        options: &RunOptions<'a>,
     ) -> Self {
         Self {
             template,
             given: given.to_vec(),
-            runs: manner.runs,
-            tell: manner.tell,
-            keep_on: manner.keep_on,
+            runs: options.runs,
+            tell: options.tell,
+            keep_on: options.keep_on,
             outlines: AtomicUsize::new(effort.outlines),
             checks: AtomicUsize::new(effort.checks),
             steps: AtomicUsize::new(effort.steps),

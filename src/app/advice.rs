@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::error::AppError;
 use super::progress;
-use crate::advice::{Advice, Effort, Manner, Remedy, RunOutcome, Trial, advise};
+use crate::advice::{Advice, Effort, Remedy, RunOptions, RunOutcome, Trial, advise};
 use crate::cell::{Cell, CellError};
 use crate::run::{RunError, run_cell};
 use crate::scenario::{KeyValue, ScenarioTemplate};
@@ -84,7 +84,7 @@ impl AdviceArguments {
             template,
             given,
             Effort::times(self.effort),
-            &Manner {
+            &RunOptions {
                 runs: &outcome,
                 tell: &tell,
                 keep_on: &keep_on,

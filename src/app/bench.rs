@@ -12,7 +12,7 @@ use crate::metrics::{BenchSummary, BoundCheck, Timing};
 use crate::recording::provenance::Provenance;
 use crate::rig::Rig;
 use crate::run::{FinishedBench, run_bench};
-use crate::scenario::{BenchScenario, JudgedValue};
+use crate::scenario::{AssumedValue, BenchScenario};
 
 /// Runs a rig's whole job, and hands what is recorded over to who watches it.
 pub(super) fn run_watched(
@@ -62,7 +62,8 @@ pub(super) fn document(
         samples: usize,
         /// Values in use that nobody has measured in public.
         #[serde(skip_serializing_if = "<[_]>::is_empty")]
-        judged: &'a [JudgedValue],
+        #[serde(rename = "judged")]
+        assumed: &'a [AssumedValue],
         provenance: &'a Provenance,
     }
     Ok(serde_json::to_string_pretty(&Document {
@@ -75,7 +76,7 @@ pub(super) fn document(
         summary: &finished.summary,
         expectations,
         samples: finished.recording.sample_count(),
-        judged: &scenario.device.judged,
+        assumed: &scenario.device.assumed,
         provenance: origin,
     })?)
 }

@@ -14,7 +14,7 @@ use clap::Args;
 use self::report::Report;
 use super::advice::AdviceArguments;
 use super::error::{AppError, ExitCode};
-use super::files::{Standing, prepare_file};
+use super::files::{OverwritePolicy, prepare_file};
 use super::output::say;
 use crate::case::RIG;
 use crate::recording::atomic::write_text;
@@ -67,7 +67,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<ExitCode, AppError> {
         let drawing = report.drawing.as_ref().ok_or_else(|| AppError::NoTool {
             file: arguments.file.display().to_string(),
         })?;
-        prepare_file(draw, "--draw", Standing::of(arguments.force))?;
+        prepare_file(draw, "--draw", OverwritePolicy::of(arguments.force))?;
         write_text(draw, drawing)?;
     }
     if arguments.json {

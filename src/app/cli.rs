@@ -6,7 +6,7 @@ use clap::{Args, CommandFactory as _, Parser, Subcommand};
 
 use super::design::PreparedStudy;
 use super::error::{AppError, ExitCode};
-use super::files::{Standing, output_folder};
+use super::files::{OverwritePolicy, output_folder};
 use super::interrupt::Interruptible;
 use super::output::show;
 use super::{help, progress};
@@ -152,7 +152,7 @@ fn design(arguments: &DesignArguments) -> Result<ExitCode, AppError> {
         &arguments.study,
         arguments.evaluations,
         &out,
-        Standing::of(arguments.force),
+        OverwritePolicy::of(arguments.force),
     )?;
     let bar = progress::bar("searching", arguments.quiet || arguments.json);
     let interruptible = Interruptible::of_one("study", &out);

@@ -9,7 +9,7 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::error::{AppError, ExitCode};
-use super::files::{DIAGNOSIS, SAMPLES, SUMMARY, Standing, is_same, prepare_file};
+use super::files::{DIAGNOSIS, OverwritePolicy, SAMPLES, SUMMARY, is_same, prepare_file};
 use super::output::say;
 use super::report::{RunResult, read_json, read_run};
 use crate::diagnosis::answer::Answer;
@@ -72,7 +72,7 @@ pub(super) fn run(arguments: &CompareArguments) -> Result<ExitCode, AppError> {
                 file: out.display().to_string(),
             });
         }
-        prepare_file(out, "--out", Standing::of(arguments.force))?;
+        prepare_file(out, "--out", OverwritePolicy::of(arguments.force))?;
         write_text(out, &html(&page::page(&compared)))?;
     }
     if arguments.json {

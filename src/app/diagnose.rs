@@ -22,7 +22,7 @@ pub(super) use all::natural;
 pub(super) use comparison_files::read_comparison;
 
 use super::error::{AppError, ExitCode};
-use super::files::{Standing, output_folder};
+use super::files::{OverwritePolicy, output_folder};
 use super::interrupt::Interruptible;
 use super::output::say;
 use super::progress::StagedLine;
@@ -106,10 +106,10 @@ fn duration(text: &str) -> Result<Duration, String> {
 /// Diagnoses and writes.
 pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
     let out = output_folder(arguments.out.as_ref(), &arguments.case);
-    let standing = match (arguments.resume, arguments.force) {
-        (true, _) => Standing::Keep,
-        (_, true) => Standing::Replace,
-        _ => Standing::Refuse,
+    let policy = match (arguments.resume, arguments.force) {
+        (true, _) => OverwritePolicy::Keep,
+        (_, true) => OverwritePolicy::Replace,
+        _ => OverwritePolicy::Refuse,
     };
     let cell = arguments
         .scenario
@@ -122,7 +122,7 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
         let jobs = arguments.jobs.map_or(1, usize::from);
         let silent = arguments.quiet || arguments.json;
         let of = (cell, arguments.limit());
-        let outcomes = all::run(&arguments.case, of, &out, standing, jobs, silent)?;
+        let outcomes = all::run(&arguments.case, of, &out, policy, jobs, silent)?;
         // A cell's cases have one file of it, and no parts to tell apart.
         let shared = match cell {
             Some(_) => Vec::new(),
@@ -130,7 +130,7 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
         };
         return all::report(&outcomes, &shared, &out, arguments.quiet, arguments.json);
     }
-    if standing == Standing::Keep
+    if policy == OverwritePolicy::Keep
         && let Some(answer) = one::complete(&out)
     {
         if arguments.json {
@@ -148,7 +148,7 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
         &arguments.case,
         (cell, tried, arguments.limit()),
         &out,
-        standing,
+        policy,
     )?;
     let mut stages = Stages::default();
     line.tell(Stages::begun(), None);
@@ -183,7 +183,7 @@ pub(super) fn answer_case(
         case,
         (None, None, EffortLimit::None),
         out,
-        Standing::Replace,
+        OverwritePolicy::Replace,
     )?;
     Ok(prepared.run(&mut |_| ())?.answer)
 }

@@ -9,7 +9,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::error::{AppError, ExitCode};
-use super::files::{Standing, prepare_file};
+use super::files::{OverwritePolicy, prepare_file};
 use super::output::say;
 use crate::demonstration::{self as scene, Stage};
 use crate::effects::{Effect, NUMBER_OFF, NUMBERS_OFF, kinds};
@@ -64,9 +64,9 @@ pub(super) struct EffectsArguments {
 
 /// Lists effects, explains one, or draws it.
 pub(super) fn run(arguments: &EffectsArguments) -> Result<ExitCode, AppError> {
-    let standing = Standing::of(arguments.force);
+    let policy = OverwritePolicy::of(arguments.force);
     if let Some(folder) = &arguments.gallery {
-        let told = gallery::write(folder, standing)?;
+        let told = gallery::write(folder, policy)?;
         if !arguments.quiet {
             say(&told)?;
         }
@@ -91,7 +91,7 @@ pub(super) fn run(arguments: &EffectsArguments) -> Result<ExitCode, AppError> {
     let effect = named(name)?;
     let stage = Stage::new(&scene::of(effect).scene)?;
     if let Some(file) = &arguments.out {
-        prepare_file(file, "--out", standing)?;
+        prepare_file(file, "--out", policy)?;
         write_text(file, &picture(effect, &stage)?.svg)?;
     }
     let explained = Explained::new(effect, &stage);

@@ -143,7 +143,7 @@ pub enum AppError {
     #[error(
         "{folder} holds results already ({name}); expected another folder (--out), or --force to put new ones in their place"
     )]
-    FolderStands {
+    ResultsExist {
         /// The folder.
         folder: String,
         /// A file that stands in it.
@@ -161,7 +161,7 @@ pub enum AppError {
     #[error(
         "{file} is there already; expected another name ({option}), or --force to put a new one in its place"
     )]
-    FileStands {
+    FileExists {
         /// The file.
         file: String,
         /// The option that names another.

@@ -58,7 +58,7 @@ pub(super) const REPORT: &str = "report.html";
 
 /// Treatment of results that stand where new ones are to go.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Standing {
+pub(super) enum OverwritePolicy {
     /// New ones are refused.
     Refuse,
     /// They are kept.
@@ -67,7 +67,7 @@ pub(super) enum Standing {
     Replace,
 }
 
-impl Standing {
+impl OverwritePolicy {
     /// As `--force` says.
     pub(super) fn of(force: bool) -> Self {
         if force { Self::Replace } else { Self::Refuse }
@@ -86,7 +86,7 @@ pub(super) fn is_same(one: &Path, other: &Path) -> bool {
 pub(super) fn prepare_file(
     path: &Path,
     option: &'static str,
-    standing: Standing,
+    policy: OverwritePolicy,
 ) -> Result<(), AppError> {
     let refuse = |reason: &dyn std::fmt::Display| AppError::OutputFile {
         file: path.display().to_string(),
@@ -96,8 +96,8 @@ pub(super) fn prepare_file(
     if path.is_dir() {
         return Err(refuse(&"there is a folder of that name"));
     }
-    if standing == Standing::Refuse && path.exists() {
-        return Err(AppError::FileStands {
+    if policy == OverwritePolicy::Refuse && path.exists() {
+        return Err(AppError::FileExists {
             file: path.display().to_string(),
             option,
         });
@@ -118,9 +118,9 @@ impl OutputFolder {
     pub(super) fn prepare(
         path: &Path,
         names: &[&str],
-        standing: Standing,
+        policy: OverwritePolicy,
     ) -> Result<Self, AppError> {
-        Self::check(path, names, standing)?;
+        Self::check(path, names, policy)?;
         make_folder(path).map_err(|error| AppError::OutputFolder {
             folder: path.display().to_string(),
             reason: error.to_string(),
@@ -132,7 +132,11 @@ impl OutputFolder {
     }
 
     /// Refuses a folder that files of these names cannot go to, without making it.
-    pub(super) fn check(path: &Path, names: &[&str], standing: Standing) -> Result<(), AppError> {
+    pub(super) fn check(
+        path: &Path,
+        names: &[&str],
+        policy: OverwritePolicy,
+    ) -> Result<(), AppError> {
         let refuse = |reason: String| AppError::OutputFolder {
             folder: path.display().to_string(),
             reason,
@@ -140,11 +144,11 @@ impl OutputFolder {
         if path.exists() && !path.is_dir() {
             return Err(refuse("there is a file of that name".to_owned()));
         }
-        let stands = |name: &&&str| path.join(name).is_file();
-        if standing == Standing::Refuse
-            && let Some(name) = names.iter().find(stands)
+        let exists = |name: &&&str| path.join(name).is_file();
+        if policy == OverwritePolicy::Refuse
+            && let Some(name) = names.iter().find(exists)
         {
-            return Err(AppError::FolderStands {
+            return Err(AppError::ResultsExist {
                 folder: path.display().to_string(),
                 name: (*name).to_owned(),
             });

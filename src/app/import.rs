@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::error::{AppError, ExitCode};
-use super::files::{Standing, is_same, prepare_file};
+use super::files::{OverwritePolicy, is_same, prepare_file};
 use super::interrupt::Interruptible;
 use super::output::say;
 use super::progress;
@@ -89,7 +89,7 @@ pub(super) fn run(arguments: &ImportArguments) -> Result<ExitCode, AppError> {
     drop(reading);
     check_destinations(&jobs)?;
     for (path, _) in jobs.iter().flat_map(|job| &job.outs) {
-        prepare_file(path, "--out", Standing::of(arguments.force))?;
+        prepare_file(path, "--out", OverwritePolicy::of(arguments.force))?;
     }
     let copies = copies(&jobs);
     let interruptible = arguments.out.as_ref().map(|out| {

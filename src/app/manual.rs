@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, Command};
 
 use super::error::{AppError, ExitCode};
-use super::files::{Standing, prepare_file};
+use super::files::{OverwritePolicy, prepare_file};
 use super::output::say;
 use crate::recording::atomic::write_text;
 
@@ -71,7 +71,11 @@ pub(super) fn man(arguments: &ManArguments, mut program: Command) -> Result<Exit
     let mut pages = Vec::new();
     pages_of(&program, "idc", &mut pages)?;
     for (name, _) in &pages {
-        prepare_file(&folder.join(name), "--out", Standing::of(arguments.force))?;
+        prepare_file(
+            &folder.join(name),
+            "--out",
+            OverwritePolicy::of(arguments.force),
+        )?;
     }
     for (name, text) in &pages {
         write_text(&folder.join(name), text)?;

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::error::{AppError, ExitCode};
-use super::files::{Standing, prepare_file};
+use super::files::{OverwritePolicy, prepare_file};
 use super::output::say;
 use crate::case::RIG;
 use crate::import::{Draft, draft};
@@ -188,7 +188,7 @@ pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
     let mut written = Vec::new();
     for (path, content) in &files {
         if !stays(path, content) || *path == file {
-            prepare_file(path, "--out", Standing::of(arguments.force))?;
+            prepare_file(path, "--out", OverwritePolicy::of(arguments.force))?;
             written.push((path, content));
         }
     }

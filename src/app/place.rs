@@ -7,7 +7,7 @@ use std::str::FromStr;
 use clap::Args;
 
 use super::error::{AppError, ExitCode};
-use super::files::{Standing, prepare_file};
+use super::files::{OverwritePolicy, prepare_file};
 use super::output::say;
 use super::progress;
 use crate::cell::Setup;
@@ -124,10 +124,10 @@ pub(super) struct PlaceArguments {
 
 /// Tries all places.
 pub(super) fn run(arguments: &PlaceArguments) -> Result<ExitCode, AppError> {
-    let standing = Standing::of(arguments.force);
+    let policy = OverwritePolicy::of(arguments.force);
     for (file, option) in [(&arguments.out, "--out"), (&arguments.csv, "--csv")] {
         if let Some(file) = file {
-            prepare_file(file, option, standing)?;
+            prepare_file(file, option, policy)?;
         }
     }
     let setup = Setup::load(load(&arguments.scenario)?)?;

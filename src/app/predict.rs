@@ -8,7 +8,7 @@ use clap::Args;
 use serde_json::Value;
 
 use super::error::{AppError, ExitCode};
-use super::files::{Standing, is_same, prepare_file};
+use super::files::{OverwritePolicy, is_same, prepare_file};
 use super::output::say;
 use super::progress;
 use crate::case::{
@@ -80,7 +80,7 @@ pub(super) fn predict(arguments: &PredictArguments) -> Result<ExitCode, AppError
         made?
     };
     for one in &made {
-        prepare_file(&one.out, "--out", Standing::of(arguments.force))?;
+        prepare_file(&one.out, "--out", OverwritePolicy::of(arguments.force))?;
     }
     for one in &made {
         write_text(&one.out, &one.csv)?;

@@ -7,7 +7,7 @@ use clap::Args;
 use clap::builder::PossibleValue;
 
 use super::error::{AppError, ExitCode};
-use super::files::{OutputFolder, Standing, prepare_file};
+use super::files::{OutputFolder, OverwritePolicy, prepare_file};
 use super::interrupt::Interruptible;
 use super::output::say;
 use super::progress;
@@ -237,7 +237,11 @@ fn run_sweep(arguments: &ProveArguments) -> Result<ExitCode, AppError> {
         "--out"
     };
     plan.check()?;
-    prepare_file(&file, option, Standing::of(arguments.force || asked.resume))?;
+    prepare_file(
+        &file,
+        option,
+        OverwritePolicy::of(arguments.force || asked.resume),
+    )?;
     let silent = asked.quiet || arguments.json;
     let bar = progress::bar("sweeping", silent);
     let interruptible = Interruptible::new({
@@ -314,12 +318,12 @@ fn law_plan(count: u64, arguments: &SweepArguments) -> DrawPlan {
 pub(super) fn run_laboratory(arguments: &LaboratoryArguments) -> Result<ExitCode, AppError> {
     let out = &arguments.out;
     let [cases, sealed] = ["cases", "sealed"].map(|name| out.join(name));
-    if let Some(stands) = [&cases, &sealed].into_iter().find(|path| path.exists())
+    if let Some(found) = [&cases, &sealed].into_iter().find(|path| path.exists())
         && !arguments.force
     {
-        return Err(AppError::FolderStands {
+        return Err(AppError::ResultsExist {
             folder: out.display().to_string(),
-            name: stands.file_name().unwrap_or_default().display().to_string(),
+            name: found.file_name().unwrap_or_default().display().to_string(),
         });
     }
     let quiet = arguments.quiet || arguments.json;
@@ -431,13 +435,13 @@ fn prepare_proof(arguments: &ProveArguments) -> Result<PathBuf, AppError> {
     for name in names.iter().filter(|_| !arguments.force) {
         let answer = Path::new(name).join("diagnosis.json");
         if arguments.folder().join(&answer).exists() {
-            return Err(AppError::FolderStands {
+            return Err(AppError::ResultsExist {
                 folder: arguments.folder().display().to_string(),
                 name: answer.display().to_string(),
             });
         }
     }
-    OutputFolder::prepare(&arguments.folder(), &[], Standing::Replace)?;
+    OutputFolder::prepare(&arguments.folder(), &[], OverwritePolicy::Replace)?;
     if let Some(cases) = there {
         return Ok(cases);
     }

@@ -22,8 +22,8 @@ use serde_json::Value;
 use super::diagnose::read_comparison;
 use super::error::{AppError, ExitCode};
 use super::files::{
-    BALANCE, CELL, COMPARISON, DESIGN, DIAGNOSIS, DRAWING, EDGE, EDGE_PROFILE, FRONT, LEAN, REPORT,
-    ROBUSTNESS, SAMPLES, SUMMARY, Standing, is_same, prepare_file,
+    BALANCE, CELL, COMPARISON, DESIGN, DIAGNOSIS, DRAWING, EDGE, EDGE_PROFILE, FRONT, LEAN,
+    OverwritePolicy, REPORT, ROBUSTNESS, SAMPLES, SUMMARY, is_same, prepare_file,
 };
 use super::fleet::{self, FLEET};
 use super::output::say;
@@ -36,7 +36,7 @@ use crate::recording::atomic::write_text;
 use crate::recording::csv::EdgeProfile;
 use crate::recording::parquet::read_parquet;
 
-pub(super) use charts::{lacking, most_of, variable};
+pub(super) use charts::{lacking, robust_range, variable};
 pub(super) use provenance::sources;
 pub(super) use run::{of_run, page_of_run};
 pub(super) use run_result::RunResult;
@@ -127,7 +127,7 @@ pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
         });
     };
     if let Some(out) = &arguments.out {
-        prepare_file(out, "--out", Standing::of(arguments.force))?;
+        prepare_file(out, "--out", OverwritePolicy::of(arguments.force))?;
     }
     let default = || folder.join(REPORT);
     let out = arguments.out.clone().unwrap_or_else(default);

@@ -17,7 +17,7 @@ pub(super) use source::Source;
 
 use super::error::{AppError, ExitCode};
 use super::files::{VARIED, is_same};
-use crate::run::put_in;
+use crate::run::apply_effects;
 use crate::scenario::{ScenarioTemplate, load_any};
 use command::one;
 use settings::product;
@@ -31,7 +31,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<ExitCode, AppError> {
     else {
         return one(arguments, load_any(&arguments.scenario)?, None);
     };
-    let effects = put_in(&arguments.effects, &template)?;
+    let effects = apply_effects(&arguments.effects, &template)?;
     for variant in &mut variants {
         variant.edits.splice(0..0, effects.iter().cloned());
     }

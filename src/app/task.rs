@@ -68,7 +68,7 @@ pub(super) fn run(arguments: &TaskArguments) -> Result<ExitCode, AppError> {
     let store = Store::of(&arguments.plan);
     store.make()?;
     let kind = plan.head.plan.clone();
-    if store.stands(id) {
+    if store.exists(id) {
         return match kind.as_str() {
             fleet::KIND => fleet::told(&store, id),
             _ => vary::told(&store, id),

@@ -39,7 +39,7 @@ pub(super) fn model(
             source,
         })
     })?;
-    bodies.push((Role::Part, standing("part", world_from_part, surface)));
+    bodies.push((Role::Part, static_body("part", world_from_part, surface)));
     for obstacle in &scenario.collision.obstacles {
         bodies.push((Role::Obstacle, body_of(obstacle, scenario, notes)?));
     }
@@ -71,7 +71,7 @@ pub(super) fn model(
     Ok(model)
 }
 
-fn standing(name: &str, pose: DPose3, solid: Solid) -> Body {
+fn static_body(name: &str, pose: DPose3, solid: Solid) -> Body {
     Body {
         name: name.to_owned(),
         mount: Mount::World(pose),
@@ -172,7 +172,7 @@ fn body_of(
             Solid::surface(&mesh)
         }
     };
-    Ok(standing(name, pose, solid.map_err(refused)?))
+    Ok(static_body(name, pose, solid.map_err(refused)?))
 }
 
 /// The floor: where the scenario says, else through the world's origin unless something of the cell stands below it.
@@ -203,6 +203,6 @@ fn floor(
     let solid = Solid::convex(&slab, DPose3::IDENTITY).ok()?;
     Some((
         Role::Floor,
-        standing("floor", DPose3::from_translation(middle), solid),
+        static_body("floor", DPose3::from_translation(middle), solid),
     ))
 }

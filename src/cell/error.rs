@@ -137,7 +137,7 @@ pub enum CellError {
     },
     /// What stands still stands in each other.
     #[error("{}: {} stands {:.1} mm deep in {}", file.display(), names[0], 1e3 * depth, names[1])]
-    Standing {
+    Penetration {
         /// Scenario file.
         file: PathBuf,
         /// The two bodies.

@@ -73,8 +73,10 @@ impl Cell {
     pub fn new(scenario: Scenario) -> Result<Self, CellError> {
         let mut setup = Setup::load(scenario)?;
         let resolution = Resolution::of(&setup.scenario, &setup.actual)?;
-        if let Some(Meeting { names, depth, .. }) = setup.collision.standing().into_iter().next() {
-            return Err(CellError::Standing {
+        if let Some(Meeting { names, depth, .. }) =
+            setup.collision.static_penetrations().into_iter().next()
+        {
+            return Err(CellError::Penetration {
                 file: setup.scenario.path.clone(),
                 names,
                 depth,
@@ -154,7 +156,7 @@ impl Cell {
     }
 
     /// The joint, from 1, whose turning moves the tool most along the contact normal in the middle of the job: what is wrong with it shows most.
-    pub fn telling_joint(&self) -> usize {
+    pub fn most_observable_joint(&self) -> usize {
         let reference = self.plan.reference(0.5 * self.plan.duration());
         let count = self.setup.arm.chain.len();
         let mut links = [DPose3::IDENTITY; MAX_JOINTS];

@@ -149,8 +149,8 @@ impl Setup {
     ) -> Result<T, PlanError> {
         let tool_path = self.tool_path(stance)?;
         let collision = self.collision.with_part_at(stance.world_from_part);
-        if let Some(meeting) = collision.standing().into_iter().next() {
-            return Err(PlanError::Standing(Box::new(meeting)));
+        if let Some(meeting) = collision.static_penetrations().into_iter().next() {
+            return Err(PlanError::Penetration(Box::new(meeting)));
         }
         let request = PlanRequest {
             briefly: true,

@@ -207,7 +207,7 @@ impl CollisionModel {
     }
 
     /// Its bodies in the world with the joints at positions; without, those that stand.
-    pub fn standing_at(&self, positions: Option<&[f64]>) -> Vec<PlacedBody<'_>> {
+    pub fn placed_at(&self, positions: Option<&[f64]>) -> Vec<PlacedBody<'_>> {
         let mut all = [0.0; MAX_JOINTS];
         for (joint, position) in all.iter_mut().zip(positions.unwrap_or_default()) {
             *joint = *position;
@@ -476,10 +476,10 @@ impl CollisionModel {
 
     /// Lowest of its standing bodies along the world's z [m].
     pub fn lowest(bodies: &[(Role, Body)]) -> f64 {
-        let standing = bodies.iter().filter_map(|(_, body)| match body.mount {
+        let heights = bodies.iter().filter_map(|(_, body)| match body.mount {
             Mount::World(pose) => Some(body.span(pose, DVec3::Z)[0]),
             Mount::Link(_) => None,
         });
-        standing.fold(f64::INFINITY, f64::min)
+        heights.fold(f64::INFINITY, f64::min)
     }
 }

@@ -36,7 +36,7 @@ pub struct Meeting {
 impl CollisionModel {
     /// Pairs that stand still in the world and reach into each other.
     #[must_use]
-    pub fn standing(&self) -> Vec<Meeting> {
+    pub fn static_penetrations(&self) -> Vec<Meeting> {
         let links = self.links(&[0.0; crate::arm::chain::MAX_JOINTS]);
         let still = self
             .pairs

@@ -12,7 +12,7 @@ use crate::plant::{
 use crate::recording::schema::{self, JointSignal, joint_quantity};
 use crate::recording::{Recording, RecordingError};
 use crate::rig::Rig;
-use crate::run::{RunError, nominal_of, put_in};
+use crate::run::{RunError, apply_effects, nominal_of};
 use crate::scenario::{AnyScenario, EffectRequest, KeyValue, ScenarioTemplate};
 
 /// A scenario that comes with the program.
@@ -221,7 +221,7 @@ pub struct Stage {
     /// Nominal parameters there.
     pub nominal: Nominal<PlantParameters>,
     /// The joint that shows most, from 1.
-    pub telling: usize,
+    pub most_observable_joint: usize,
 }
 
 enum Kind {
@@ -255,7 +255,7 @@ impl Stage {
                 Ok(Self {
                     nominal,
                     kind: Kind::Part,
-                    telling: 1,
+                    most_observable_joint: 1,
                 })
             }
         }
@@ -274,7 +274,7 @@ impl Stage {
         }
         let path: PathBuf = folder.path().join(shipped.path);
         let template = ScenarioTemplate::read(&path)?;
-        let (nominal, telling) = nominal_of(&template)?;
+        let (nominal, most_observable_joint) = nominal_of(&template)?;
         Ok(Self {
             kind: Kind::Run {
                 template,
@@ -282,7 +282,7 @@ impl Stage {
                 _folder: folder,
             },
             nominal,
-            telling,
+            most_observable_joint,
         })
     }
 
@@ -307,7 +307,7 @@ impl Stage {
                 };
                 let asked = EffectRequest::parse(&asked(effect));
                 let asked = asked.map_err(|reason| RunError::With { reason })?;
-                let edits: Vec<KeyValue> = put_in(&[asked], template)?;
+                let edits: Vec<KeyValue> = apply_effects(&[asked], template)?;
                 Ok([unchanged.clone(), self.signals(template.with(&edits)?)?])
             }
         }
@@ -324,7 +324,9 @@ impl Stage {
                 let cell = Cell::new(*cell)?;
                 let recording = cell.run(&mut |_| ())?.recording;
                 let mut signals = of_recording(&recording, atmosphere);
-                signals.signals.extend(of_joint(&recording, self.telling));
+                signals
+                    .signals
+                    .extend(of_joint(&recording, self.most_observable_joint));
                 Ok(signals)
             }
         }

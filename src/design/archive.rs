@@ -9,7 +9,7 @@ use super::study::{Study, TradeOff};
 
 /// An evaluated design.
 #[derive(Debug, Clone)]
-pub(super) struct Judged {
+pub(super) struct EvaluatedDesign {
     /// Its values, one a variable.
     pub values: Vec<f64>,
     /// Its result, or the reason why there is none.
@@ -36,12 +36,12 @@ impl Scored {
 }
 
 /// A design that could be simulated.
-pub(super) type Good = (Arc<Judged>, Scored);
+pub(super) type Good = (Arc<EvaluatedDesign>, Scored);
 
 /// The design, if it could be simulated.
-pub(super) fn good(judged: &Arc<Judged>) -> Option<Good> {
-    let scored = judged.result.as_ref().ok()?;
-    Some((judged.clone(), scored.clone()))
+pub(super) fn good(evaluated: &Arc<EvaluatedDesign>) -> Option<Good> {
+    let scored = evaluated.result.as_ref().ok()?;
+    Some((evaluated.clone(), scored.clone()))
 }
 
 /// A part of the search: its stretch of the budget, and the designs that were known when it began.
@@ -67,7 +67,7 @@ pub(super) struct Archive<'a> {
     progress: &'a (dyn Fn(usize, usize) + Sync),
     /// State of the progress.
     stage: Mutex<Stage>,
-    known: Mutex<BTreeMap<Vec<u64>, Arc<Judged>>>,
+    known: Mutex<BTreeMap<Vec<u64>, Arc<EvaluatedDesign>>>,
 }
 
 impl<'a> Archive<'a> {
@@ -107,31 +107,31 @@ impl<'a> Archive<'a> {
     }
 
     /// The design at these places from 0 to 1.
-    pub fn at(&self, places: &[f64]) -> Arc<Judged> {
+    pub fn at(&self, places: &[f64]) -> Arc<EvaluatedDesign> {
         let values = self.study.values(places);
         let key: Vec<u64> = values.iter().map(|value| sortable(*value)).collect();
-        if let Some(judged) = self.known().get(&key) {
-            return judged.clone();
+        if let Some(evaluated) = self.known().get(&key) {
+            return evaluated.clone();
         }
         // Not under the lock: this takes long. Two threads may do the same work, with the same outcome.
-        let judged = Arc::new(self.evaluate(values));
+        let evaluated = Arc::new(self.evaluate(values));
         let count = {
             let mut known = self.known();
-            known.entry(key).or_insert_with(|| judged.clone());
+            known.entry(key).or_insert_with(|| evaluated.clone());
             known.len()
         };
         let position = self.stage().position(count);
         (self.progress)(position, self.study.evaluations);
-        judged
+        evaluated
     }
 
     /// A design of any values, which is not remembered.
-    pub fn evaluate(&self, values: Vec<f64>) -> Judged {
+    pub fn evaluate(&self, values: Vec<f64>) -> EvaluatedDesign {
         let result = self
             .evaluator
             .evaluate(&self.study.design(&values))
             .and_then(|outcome| score(self.study, &values, outcome));
-        Judged { values, result }
+        EvaluatedDesign { values, result }
     }
 
     /// The bare outcome of a design, of which metrics may be missing.
@@ -140,7 +140,7 @@ impl<'a> Archive<'a> {
     }
 
     /// All designs so far, by their values.
-    pub fn all(&self) -> Vec<Arc<Judged>> {
+    pub fn all(&self) -> Vec<Arc<EvaluatedDesign>> {
         self.known().values().cloned().collect()
     }
 
@@ -151,7 +151,7 @@ impl<'a> Archive<'a> {
         good.filter(|(_, scored)| scored.feasible()).collect()
     }
 
-    fn known(&self) -> std::sync::MutexGuard<'_, BTreeMap<Vec<u64>, Arc<Judged>>> {
+    fn known(&self) -> std::sync::MutexGuard<'_, BTreeMap<Vec<u64>, Arc<EvaluatedDesign>>> {
         // Only whole entries are ever inserted, so a panic elsewhere leaves the map sound.
         self.known.lock().unwrap_or_else(PoisonError::into_inner)
     }

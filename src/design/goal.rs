@@ -4,7 +4,7 @@
 //! feasible designs the one of lower cost, of a feasible and an infeasible one the feasible one, of two infeasible ones the one with the smaller
 //! sum of excesses, before all that cannot be simulated. The rule as one number, [`Goal::rank`], is what a method that only compares is given.
 
-use super::archive::{Judged, Scored};
+use super::archive::{EvaluatedDesign, Scored};
 
 /// Which of both objectives is minimised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,8 +53,8 @@ impl Goal {
     }
 
     /// The feasibility rule as one number, less being better: below 1 feasible, from 2 to 3 infeasible, 4 not simulated.
-    pub fn rank(&self, judged: &Judged) -> f64 {
-        let Ok(scored) = &judged.result else {
+    pub fn rank(&self, evaluated: &EvaluatedDesign) -> f64 {
+        let Ok(scored) = &evaluated.result else {
             return 4.0;
         };
         let outside: f64 = self
@@ -81,8 +81,8 @@ mod tests {
     use super::*;
     use crate::design::{EvaluateError, Outcome};
 
-    fn judged(objective: f64, excess: [f64; 2]) -> Judged {
-        Judged {
+    fn evaluated(objective: f64, excess: [f64; 2]) -> EvaluatedDesign {
+        EvaluatedDesign {
             values: vec![],
             result: Ok(Scored {
                 outcome: Outcome {
@@ -104,7 +104,7 @@ mod tests {
             slack: vec![0.0; 2],
             scales: [1.0; 2],
         };
-        let failed = Judged {
+        let failed = EvaluatedDesign {
             values: vec![],
             result: Err(EvaluateError {
                 reason: "stopped".into(),
@@ -112,15 +112,15 @@ mod tests {
             }),
         };
         let ordered = [
-            judged(-1e3, [0.0, -1.0]),
-            judged(0.5, [-1.0, -1.0]),
-            judged(1e6, [0.0, 0.0]),
-            judged(-1e9, [1e-9, -5.0]),
-            judged(0.0, [0.2, 0.2]),
-            judged(0.0, [0.5, -9.0]),
+            evaluated(-1e3, [0.0, -1.0]),
+            evaluated(0.5, [-1.0, -1.0]),
+            evaluated(1e6, [0.0, 0.0]),
+            evaluated(-1e9, [1e-9, -5.0]),
+            evaluated(0.0, [0.2, 0.2]),
+            evaluated(0.0, [0.5, -9.0]),
             failed,
         ];
-        let ranks = ordered.map(|judged| goal.rank(&judged));
+        let ranks = ordered.map(|evaluated| goal.rank(&evaluated));
         assert!(ranks.is_sorted_by(|a, b| a < b), "{ranks:?}");
         assert_eq!(
             ranks.map(Goal::keeps).iter().filter(|kept| **kept).count(),

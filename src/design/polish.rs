@@ -11,7 +11,7 @@ use basin::{
     NonlinearInequalityValues, SelectedState,
 };
 
-use super::archive::{Archive, Judged};
+use super::archive::{Archive, EvaluatedDesign};
 use super::error::DesignError;
 use super::goal::Goal;
 
@@ -50,18 +50,18 @@ struct Local<'a> {
 
 impl Local<'_> {
     /// Evaluates within the bounds, whatever the method asks for.
-    fn judge(&self, point: &[f64]) -> std::sync::Arc<Judged> {
+    fn judge(&self, point: &[f64]) -> std::sync::Arc<EvaluatedDesign> {
         let mut places = self.fixed.clone();
         for (index, place) in self.free.iter().zip(point) {
             places[*index] = place.clamp(0.0, 1.0);
         }
-        let judged = self.archive.at(&places);
-        let rank = self.goal.rank(&judged);
+        let evaluated = self.archive.at(&places);
+        let rank = self.goal.rank(&evaluated);
         let mut best = self.best.lock().unwrap_or_else(PoisonError::into_inner);
         if rank < best.rank {
             *best = Ranked { places, rank };
         }
-        judged
+        evaluated
     }
 
     fn constraint_count(&self) -> usize {
@@ -75,8 +75,8 @@ impl CostFunction for Local<'_> {
     type Error = Infallible;
 
     fn cost(&self, point: &Vec<f64>) -> Result<f64, Infallible> {
-        let judged = self.judge(point);
-        Ok(judged
+        let evaluated = self.judge(point);
+        Ok(evaluated
             .result
             .as_ref()
             .map_or(FAILED, |scored| self.goal.cost(scored)))
@@ -104,10 +104,10 @@ impl NonlinearInequalityValues for Local<'_> {
         &self,
         point: &Vec<f64>,
     ) -> Result<Vec<f64>, ConstraintSolveError<Infallible>> {
-        let judged = self.judge(point);
+        let evaluated = self.judge(point);
         let bounds = point.iter().flat_map(|place| [-place, place - 1.0]);
         let mut values: Vec<f64> = bounds.collect();
-        match &judged.result {
+        match &evaluated.result {
             Ok(scored) => values.extend(self.goal.excesses(scored).iter().map(|e| e + INSIDE)),
             Err(_) => values.resize(self.constraint_count(), FAILED),
         }

@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 
 use rayon::prelude::*;
 
-use super::archive::{Archive, Judged};
+use super::archive::{Archive, EvaluatedDesign};
 use super::error::DesignError;
 use super::goal::Goal;
 use super::polish::{Ranked, polish};
@@ -120,18 +120,18 @@ fn neighbours(study: &Study, places: &[f64]) -> Vec<Vec<f64>> {
 pub(super) fn distinct_best(
     study: &Study,
     goal: &Goal,
-    all: &[std::sync::Arc<Judged>],
+    all: &[std::sync::Arc<EvaluatedDesign>],
     count: usize,
 ) -> Vec<Vec<f64>> {
-    let mut ranked: Vec<(f64, &Judged)> = all
+    let mut ranked: Vec<(f64, &EvaluatedDesign)> = all
         .iter()
-        .map(|judged| (goal.rank(judged), &**judged))
+        .map(|evaluated| (goal.rank(evaluated), &**evaluated))
         .collect();
     // Stable: of equals the first by their values stays first.
     ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut chosen: Vec<Vec<f64>> = Vec::new();
-    for (_, judged) in ranked {
-        let places = places_of(study, judged);
+    for (_, evaluated) in ranked {
+        let places = places_of(study, evaluated);
         let apart = |other: &Vec<f64>| {
             choice(study, other) != choice(study, &places)
                 || other
@@ -150,8 +150,8 @@ pub(super) fn distinct_best(
 }
 
 /// Places of a design.
-pub(super) fn places_of(study: &Study, judged: &Judged) -> Vec<f64> {
-    let pairs = study.variables.iter().zip(&judged.values);
+pub(super) fn places_of(study: &Study, evaluated: &EvaluatedDesign) -> Vec<f64> {
+    let pairs = study.variables.iter().zip(&evaluated.values);
     pairs
         .map(|(variable, value)| variable.domain.place(*value))
         .collect()

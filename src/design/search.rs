@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::archive::{Archive, Good, Judged, Scored, good};
+use super::archive::{Archive, EvaluatedDesign, Good, Scored, good};
 use super::candidate::Evaluate;
 use super::error::DesignError;
 use super::evolve::evolve;
@@ -111,8 +111,8 @@ pub fn check_start(study: &Study, evaluator: &dyn Evaluate) -> Result<(), Design
 /// The starting design, after a check that every metric of the file is one.
 fn start(archive: &Archive<'_>) -> Result<Good, DesignError> {
     let study = archive.study();
-    let judged = archive.at(&study.start());
-    if let Some(good) = good(&judged) {
+    let evaluated = archive.at(&study.start());
+    if let Some(good) = good(&evaluated) {
         return Ok(good);
     }
     let failed = |detail: String| DesignError::Start {
@@ -120,7 +120,7 @@ fn start(archive: &Archive<'_>) -> Result<Good, DesignError> {
         detail,
     };
     // Which metrics there are is only known from an outcome.
-    let outcome = archive.outcome(&judged.values);
+    let outcome = archive.outcome(&evaluated.values);
     let outcome = outcome.map_err(|error| failed(error.detail))?;
     let metrics = outcome
         .scenarios
@@ -131,7 +131,7 @@ fn start(archive: &Archive<'_>) -> Result<Good, DesignError> {
         .places
         .iter()
         .find(|(_, metric, _)| !known.contains(metric));
-    match (unknown, &judged.result) {
+    match (unknown, &evaluated.result) {
         (Some((key, metric, place)), _) => Err(DesignError::UnknownMetric {
             place: place.clone(),
             key: key.clone(),
@@ -166,13 +166,13 @@ fn best(archive: &Archive<'_>, goal: &Goal) -> Result<Good, DesignError> {
     let all = archive.all();
     let best = all
         .iter()
-        .map(|judged| (goal.rank(judged), judged))
+        .map(|evaluated| (goal.rank(evaluated), evaluated))
         .reduce(|best, other| if other.0 < best.0 { other } else { best });
     match best {
-        Some((rank, judged)) if Goal::keeps(rank) => {
-            good(judged).ok_or_else(|| only_failures(&all))
+        Some((rank, evaluated)) if Goal::keeps(rank) => {
+            good(evaluated).ok_or_else(|| only_failures(&all))
         }
-        Some((_, judged)) => Err(match &judged.result {
+        Some((_, evaluated)) => Err(match &evaluated.result {
             Ok(scored) => no_design(archive.study(), scored, all.len()),
             Err(_) => only_failures(&all),
         }),
@@ -199,9 +199,12 @@ fn no_design(study: &Study, scored: &Scored, designs: usize) -> DesignError {
     }
 }
 
-fn only_failures(all: &[Arc<Judged>]) -> DesignError {
+fn only_failures(all: &[Arc<EvaluatedDesign>]) -> DesignError {
     let mut reasons: BTreeMap<&str, usize> = BTreeMap::new();
-    for error in all.iter().filter_map(|judged| judged.result.as_ref().err()) {
+    for error in all
+        .iter()
+        .filter_map(|evaluated| evaluated.result.as_ref().err())
+    {
         *reasons.entry(&error.reason).or_default() += 1;
     }
     let most = reasons.iter().max_by_key(|(_, count)| **count);

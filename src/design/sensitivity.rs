@@ -6,7 +6,7 @@
 
 use rayon::prelude::*;
 
-use super::archive::{Archive, Judged, Scored};
+use super::archive::{Archive, EvaluatedDesign, Scored};
 use super::error::DesignError;
 use super::goal::Goal;
 use super::polish::polish;
@@ -25,7 +25,7 @@ const RADIUS: f64 = 0.05;
 /// One row for each variable and direction that there is.
 pub(super) fn sensitivities(
     archive: &Archive<'_>,
-    chosen: &Judged,
+    chosen: &EvaluatedDesign,
     score: &Scored,
 ) -> Vec<Sensitivity> {
     let study = archive.study();
@@ -69,7 +69,7 @@ fn next(variable: &Variable, value: f64, larger: bool) -> Option<f64> {
 
 fn sensitivity(
     archive: &Archive<'_>,
-    chosen: &Judged,
+    chosen: &EvaluatedDesign,
     score: &Scored,
     index: usize,
     value: f64,
@@ -80,13 +80,13 @@ fn sensitivity(
     let before = values[index];
     values[index] = value;
     let [min, max] = variable.domain.ends();
-    let judged = archive.evaluate(values);
+    let evaluated = archive.evaluate(values);
     let broken = |scored: &Scored| {
         let pairs = study.limits.iter().zip(&scored.excess);
         let broken = pairs.filter(|(_, excess)| **excess > 0.0);
         broken.map(|(limit, _)| limit.key().to_owned()).collect()
     };
-    let scored = judged.result.as_ref();
+    let scored = evaluated.result.as_ref();
     Sensitivity {
         variable: variable.key.clone(),
         value,
@@ -112,7 +112,7 @@ fn relative(before: f64, after: f64) -> f64 {
 /// Variables on a bound.
 pub(super) fn active_bounds(
     study: &Study,
-    chosen: &Judged,
+    chosen: &EvaluatedDesign,
     steps: &[Sensitivity],
 ) -> Vec<ActiveBound> {
     let mut found = Vec::new();
@@ -152,7 +152,7 @@ pub(super) fn active_bounds(
 pub(super) fn active_limits(
     archive: &Archive<'_>,
     goal: &Goal,
-    chosen: &Judged,
+    chosen: &EvaluatedDesign,
     score: &Scored,
     budget: usize,
 ) -> Result<Vec<ActiveLimit>, DesignError> {

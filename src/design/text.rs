@@ -13,7 +13,7 @@ const WIDTH: usize = 80;
 /// Rows of the front that are printed; design.json has them all.
 const FRONT_ROWS: usize = 10;
 /// A step that would still lower the objective by more than this [%] is pointed out.
-const NOT_ENDED: f64 = 0.5;
+const LEAST_PROGRESS: f64 = 0.5;
 
 /// The table.
 #[must_use]
@@ -273,7 +273,7 @@ fn steps(out: &mut String, result: &StudyResult) {
             .map_or_else(|| "-".to_owned(), percent);
         row(out, &name, [number(step.value), objective], &remark(step));
     }
-    if let Some(step) = result.improving_steps(NOT_ENDED).next() {
+    if let Some(step) = result.improving_steps(LEAST_PROGRESS).next() {
         let hint = format!(
             "  {} alone would still lower it: more evaluations would help.",
             step.variable

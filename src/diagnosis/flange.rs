@@ -76,7 +76,7 @@ pub struct RunMetrics {
     /// Share of the time in which contact is lost while the arm moves [1].
     pub lost: f64,
     /// Until when the arm stands [s].
-    pub stands_until: f64,
+    pub stationary_until: f64,
 }
 
 /// Time over which the force is averaged for its settling [s].
@@ -136,7 +136,7 @@ pub enum NoContact {
     #[error(
         "{run}: the arm comes at {approach:.4} m/s in the time before contact, expected at least {COMES} m/s towards the part"
     )]
-    Stands {
+    Stationary {
         /// File name.
         run: String,
         /// Its speed [m/s].
@@ -184,9 +184,9 @@ impl Run {
             ..
         } = touch;
         let leaves = self.leaves(&touch);
-        let stands_until = time[leaves.saturating_sub(1).max(first)];
+        let stationary_until = time[leaves.saturating_sub(1).max(first)];
         let hold = first..leaves.max(first + 2);
-        let settled = self.between(0.5 * (contact + stands_until), stands_until);
+        let settled = self.between(0.5 * (contact + stationary_until), stationary_until);
         let errors: Vec<f64> = settled
             .clone()
             .map(|i| force[i] - self.desired[i])
@@ -224,7 +224,7 @@ impl Run {
             moving,
             spread: (samples.len() > FEW_MOVING).then(|| self.spread(&samples)),
             lost,
-            stands_until,
+            stationary_until,
         })
     }
 
@@ -251,7 +251,7 @@ impl Run {
         let approach = mean(&self.speed[approaching.clone()]);
         let before = median(self.desired[approaching].iter().copied()).unwrap_or(0.0);
         if approach.is_nan() || approach < COMES {
-            return Err(NoContact::Stands {
+            return Err(NoContact::Stationary {
                 run: run(),
                 approach,
             });
@@ -417,7 +417,7 @@ fn loudest(time: &[f64], force: &[f64]) -> Option<f64> {
 /// Rate at which the amplitude at a frequency falls [1/s]: a line through the logarithm of its amplitude in pieces of some cycles, while it stands out.
 fn decay(time: &[f64], force: &[f64], frequency: f64) -> Option<f64> {
     const CYCLES: f64 = 4.0;
-    const STANDS_OUT: f64 = 0.1;
+    const PROMINENT: f64 = 0.1;
     let start = *time.first()?;
     let length = CYCLES / frequency;
     let mut points: Vec<(f64, f64)> = Vec::new();
@@ -427,7 +427,7 @@ fn decay(time: &[f64], force: &[f64], frequency: f64) -> Option<f64> {
             time.partition_point(|t| *t < from)..time.partition_point(|t| *t < from + length);
         let amplitude = power_at(&time[piece.clone()], &force[piece], frequency).sqrt();
         let loudest = points.first().map_or(amplitude, |(_, a)| *a);
-        if amplitude < STANDS_OUT * loudest {
+        if amplitude < PROMINENT * loudest {
             break;
         }
         points.push((from - start, amplitude));

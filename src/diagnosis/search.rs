@@ -16,7 +16,7 @@ pub(super) mod tried;
 use self::progress::{Observer, Step};
 use self::scale::Scale;
 use super::fit::free::Free;
-use super::fit::hypothesis::{Hypothesis, stands_for};
+use super::fit::hypothesis::{Hypothesis, is_equivalent};
 use super::fit::model_error::ModelError;
 use super::fit::{Limit, ROUGH, Refit, Stage, fit, rough_noise};
 use super::recordings::evidence::{Evidence, Prediction};
@@ -379,7 +379,7 @@ impl Search<'_> {
         let mut full: Vec<Hypothesis> = Vec::new();
         for candidate in candidates {
             let spared = |plain: &Hypothesis| {
-                stands_for(plain, candidate) && scale.leaves_nothing_material(plain)
+                is_equivalent(plain, candidate) && scale.leaves_nothing_material(plain)
             };
             if full.iter().any(spared) {
                 continue;

@@ -24,7 +24,7 @@ pub struct PresentEffect {
 
 impl PresentEffect {
     /// Makes it a part of a description.
-    pub fn put_into(&self, plant: &mut PlantParameters) {
+    pub fn apply_to(&self, plant: &mut PlantParameters) {
         if let Some(law) = &self.law {
             plant.own.push(OwnLaw::new(law));
         }
@@ -41,7 +41,7 @@ pub fn actual(
 ) -> Actual<PlantParameters> {
     nominal.with(|plant| {
         for effect in effects {
-            effect.put_into(plant);
+            effect.apply_to(plant);
         }
         plant.device = plant.device_under_terms().into_owned();
     })

@@ -9,7 +9,7 @@
 //! flange's seals do as they turn (their friction changes its sign) is lost without it.
 
 /// Speed below which the arm is not commanded [m/s].
-const STANDS: f64 = 1e-3;
+const STATIONARY_SPEED: f64 = 1e-3;
 /// Speed below which it stands [m/s], for a time [s].
 const RESTS: (f64, f64) = (2.5e-4, 0.02);
 /// Longest time from the end of the command to the dip [s].
@@ -24,8 +24,8 @@ pub fn towards_part(
     touch: f64,
 ) -> (Vec<f64>, Option<f64>) {
     let mut towards = logged.to_vec();
-    let stands = |i: &usize| time[*i] > touch && commanded[*i].abs() < STANDS;
-    let Some(ends) = (0..time.len()).find(stands) else {
+    let stationary = |i: &usize| time[*i] > touch && commanded[*i].abs() < STATIONARY_SPEED;
+    let Some(ends) = (0..time.len()).find(stationary) else {
         return (towards, None);
     };
     let mut dip = ends;
@@ -35,7 +35,7 @@ pub fn towards_part(
     {
         dip += 1;
     }
-    let slides = (dip..time.len()).find(|i| commanded[*i].abs() >= STANDS);
+    let slides = (dip..time.len()).find(|i| commanded[*i].abs() >= STATIONARY_SPEED);
     let until = slides.unwrap_or(time.len());
     let mut rested = time[dip];
     for i in (dip + 1).min(until)..until {

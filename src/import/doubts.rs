@@ -390,7 +390,7 @@ mod tests {
             ("temperature", "K", 21.0, "degC"),
         ];
         for (quantity, unit, size, other) in cases {
-            let said = doubts(&ChannelMap::as_it_stands(quantity, unit), |t| {
+            let said = doubts(&ChannelMap::unconverted(quantity, unit), |t| {
                 size * (1.0 + 0.1 * t.sin())
             });
             assert!(
@@ -398,16 +398,14 @@ mod tests {
                 "{quantity}: {said}"
             );
         }
-        let said = doubts(&ChannelMap::as_it_stands("stroke", "mm"), |t| {
-            40.0 * t.sin()
-        });
+        let said = doubts(&ChannelMap::unconverted("stroke", "mm"), |t| 40.0 * t.sin());
         assert_eq!(said, "");
     }
 
     #[test]
     fn a_columns_name_that_says_another_unit_is_believed_no_less_than_the_map() {
         let named = |column: &str, unit: &str| {
-            let mut channel = ChannelMap::as_it_stands("force", unit);
+            let mut channel = ChannelMap::unconverted("force", unit);
             channel.column = Column::Name(column.to_owned());
             channel
         };
@@ -440,7 +438,7 @@ mod tests {
 
     #[test]
     fn what_ends_at_ten_or_moves_in_a_converters_steps_is_taken_for_volts() {
-        let force = ChannelMap::as_it_stands("force", "N");
+        let force = ChannelMap::unconverted("force", "N");
         let said = doubts(&force, |t| {
             (14.0 * t.sin() + 0.1 * rough(t)).clamp(-10.0, 10.0)
         });
@@ -467,7 +465,7 @@ mod tests {
     #[test]
     fn gauge_and_absolute_are_told_apart_by_where_they_rest() {
         let stroke = |t: f64| 3.0 * (t - 20.0).clamp(0.0, 1.0);
-        let mut channel = ChannelMap::as_it_stands("pressure_gauge", "bar");
+        let mut channel = ChannelMap::unconverted("pressure_gauge", "bar");
         let said = doubts(&channel, |t| 1.013 + stroke(t) + 0.001 * rough(t));
         assert!(said.contains("looks absolute"), "{said}");
         assert_eq!(doubts(&channel, |t| stroke(t) + 0.001 * rough(t)), "");
@@ -506,16 +504,16 @@ mod tests {
             ];
             Recording::new(time.clone(), channels, Vec::new()).unwrap()
         };
-        let said = of_command(&recording(&law), &ChannelMap::as_it_stands("force", "N")).unwrap();
+        let said = of_command(&recording(&law), &ChannelMap::unconverted("force", "N")).unwrap();
         assert!(said.contains("controller's output"), "{said}");
         assert_eq!(
             of_command(
                 &recording(&measured),
-                &ChannelMap::as_it_stands("force", "N")
+                &ChannelMap::unconverted("force", "N")
             ),
             None
         );
-        let mut scaled = ChannelMap::as_it_stands("force", "N");
+        let mut scaled = ChannelMap::unconverted("force", "N");
         scaled.gain = 35.0;
         assert_eq!(of_command(&recording(&law), &scaled), None);
     }

@@ -210,7 +210,7 @@ mod tests {
     #[test]
     fn noise_and_rate_come_back() {
         let smooth = series(|t| 40.0 * (0.7 * t).sin() + 0.5 * rough(t));
-        let found = finding(&smooth, &ChannelMap::as_it_stands("force", "N"));
+        let found = finding(&smooth, &ChannelMap::unconverted("force", "N"));
         assert!((found.noise.unwrap() / 0.5 - 1.0).abs() < 0.1, "{found:?}");
         assert!((found.rate - 100.0).abs() < 1e-6);
         assert!(found.gaps.is_empty() && found.quantum.is_none() && found.doubts.is_empty());
@@ -220,7 +220,7 @@ mod tests {
     #[test]
     fn steps_of_a_converter_are_seen() {
         let stepped = series(|t| 0.0025 * (400.0 * (3.0 * t).sin()).round());
-        let found = finding(&stepped, &ChannelMap::as_it_stands("stroke", "m"));
+        let found = finding(&stepped, &ChannelMap::unconverted("stroke", "m"));
         assert!(
             (found.quantum.unwrap() / 0.0025 - 1.0).abs() < 1e-6,
             "{found:?}"
@@ -231,7 +231,7 @@ mod tests {
     fn a_channel_that_is_cut_off_is_seen() {
         let cut = series(|t| (30.0 * t.sin() + rough(t)).min(20.0));
         assert_eq!(
-            finding(&cut, &ChannelMap::as_it_stands("force", "N")).cut_off_at,
+            finding(&cut, &ChannelMap::unconverted("force", "N")).cut_off_at,
             [20.0]
         );
     }
@@ -241,7 +241,7 @@ mod tests {
         let mut gapped = series(|t| t);
         gapped.time[500..].iter_mut().for_each(|t| *t += 1.0);
         gapped.time[900..].iter_mut().for_each(|t| *t += 3.0);
-        let gaps = finding(&gapped, &ChannelMap::as_it_stands("force", "N")).gaps;
+        let gaps = finding(&gapped, &ChannelMap::unconverted("force", "N")).gaps;
         assert_eq!(gaps.len(), 2);
         assert!((gaps[0][1] - gaps[0][0] - 3.01).abs() < 1e-9);
     }

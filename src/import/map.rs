@@ -275,7 +275,7 @@ impl ChannelMap {
 #[cfg(test)]
 impl ChannelMap {
     /// A channel without gain, its pressure gauge, for tests.
-    pub(super) fn as_it_stands(quantity: &str, unit: &str) -> Self {
+    pub(super) fn unconverted(quantity: &str, unit: &str) -> Self {
         let unit = super::units::named(unit).expect("tests name units that are there");
         Self {
             quantity: quantity.to_owned(),

@@ -34,7 +34,7 @@ pub(crate) struct Key {
     /// Words for what leaving it out does.
     default_words: Option<&'static str>,
     /// Results that rest on its value, where nobody has measured that in public.
-    pub judged: Option<&'static str>,
+    pub assumed: Option<&'static str>,
     /// Kinds of its table that have it; all where there are none.
     kinds: &'static [&'static str],
     is_required: bool,
@@ -233,7 +233,7 @@ impl Key {
             range_words: None,
             default: None,
             default_words: None,
-            judged: None,
+            assumed: None,
             kinds: &[],
             is_required: T::absent().is_none(),
             word: T::WORD,
@@ -296,8 +296,8 @@ impl Key {
     }
 
     /// What its value decides, which nobody has measured in public.
-    pub fn judged(mut self, decides: &'static str) -> Self {
-        self.judged = Some(decides);
+    pub fn assumed(mut self, decides: &'static str) -> Self {
+        self.assumed = Some(decides);
         self
     }
 
@@ -347,7 +347,7 @@ impl Key {
             true => self.meaning.to_owned(),
             false => format!("{}: {}", listed(&kinds, "and"), self.meaning),
         };
-        if let Some(decides) = self.judged {
+        if let Some(decides) = self.assumed {
             meaning += &format!("; judged, decides {decides}");
         }
         [unit, default, range, meaning]
@@ -578,7 +578,7 @@ macro_rules! keys {
             $(#[doc = $meaning:literal])*
             $field:ident: $type:ty = $key:literal $(must $stand:ident)? $(for $($kind:literal)|+)? $(in $range:expr)? $(, of $number:expr)?
                 $(, or $default:expr)? $(, from $si:expr)? $(, else $derived:expr)? $(, shown $words:literal)? $(, being $being:literal)?
-                $(, judged $decides:literal)?;
+                $(, assumed $decides:literal)?;
         )+ }
     )+) => {$(
         $(#[doc = $about])+
@@ -593,7 +593,7 @@ macro_rules! keys {
                 vec![$(
                     $crate::keys::declaration::Key::new::<$type>($key, concat!($($meaning),*))
                         $(.must(stringify!($stand)))? $(.of_kinds(&[$($kind),+]))? $(.within($range))? $(.known(&$number))? $(.by_default($default))?
-                        $(.by_default($crate::keys::declaration::default_of_si($key, $si)))? $(.default_shown($words))? $(.being($being))? $(.judged($decides))?,
+                        $(.by_default($crate::keys::declaration::default_of_si($key, $si)))? $(.default_shown($words))? $(.being($being))? $(.assumed($decides))?,
                 )+]
             }
         }

@@ -108,7 +108,7 @@ fn text(text: &str) -> Result<MeshFile, Fault> {
         ));
     }
     let mut notes = Vec::new();
-    if !reader.ended {
+    if !reader.closed {
         notes.push(
             "its text ends without `endsolid`; if it was cut short, triangles are missing"
                 .to_owned(),
@@ -129,7 +129,7 @@ struct Facets {
     vertex: Option<Vec<f64>>,
     started: bool,
     open: bool,
-    ended: bool,
+    closed: bool,
 }
 
 impl Facets {
@@ -142,7 +142,7 @@ impl Facets {
                 return Err(Fault::at_line(line, format!("`{first}` within a facet")));
             }
             self.started = true;
-            self.ended = first == "endsolid";
+            self.closed = first == "endsolid";
             // All on one line, or a name to its end.
             match lower.find(" facet normal") {
                 Some(place) => from = place,
@@ -171,12 +171,12 @@ impl Facets {
                 "facet" if self.open => return Err(Fault::at_line(line, "`facet` within a facet")),
                 "facet" => {
                     self.open = true;
-                    self.ended = false;
+                    self.closed = false;
                 }
                 "vertex" if self.open => self.vertex = Some(Vec::new()),
                 "endfacet" => self.close(line)?,
                 "endsolid" if !self.open => {
-                    self.ended = true;
+                    self.closed = true;
                     return Ok(());
                 }
                 // Normals, which triangles say themselves, and what frames a loop.

@@ -24,10 +24,10 @@ pub(super) fn measure(summary: &mut Summary, profile: &EdgeProfile, limits: &Edg
     };
     ends(summary, profile, limits);
     let (from, to) = (first + limits.ends, last - limits.ends);
-    let judged: Vec<usize> = (0..profile.place.len())
+    let between_ends: Vec<usize> = (0..profile.place.len())
         .filter(|&i| (from..=to).contains(&profile.place[i]))
         .collect();
-    let of = |values: &[f64]| -> Vec<f64> { judged.iter().map(|&i| values[i]).collect() };
+    let of = |values: &[f64]| -> Vec<f64> { between_ends.iter().map(|&i| values[i]).collect() };
     let legs = of(&profile.chamfer_leg);
     let burrs = of(&profile.burr_after);
     let sections = of(&profile.section_removed);
@@ -47,7 +47,7 @@ pub(super) fn measure(summary: &mut Summary, profile: &EdgeProfile, limits: &Edg
     let count = legs.len() as f64;
     let left = burrs.iter().filter(|burr| **burr > limits.residual_burr);
     summary.residual_burr_share_percent = Some(100.0 * left.count() as f64 / count);
-    summary.out_of_tolerance_share_percent = out_of_tolerance(profile, limits, &judged);
+    summary.out_of_tolerance_share_percent = out_of_tolerance(profile, limits, &between_ends);
     let (mean, deviation) = moments(&sections);
     summary.section_removed_mean_mm2 = Some(1e6 * mean);
     summary.section_variation_percent = (mean > 0.0).then(|| 100.0 * deviation / mean);

@@ -53,7 +53,7 @@ impl BoundCheck {
 }
 
 /// The bound that stands unless a scenario sets one on its number: no drive is at its limit.
-const STANDING: &str = "drives_saturated_s";
+const IMPLICIT_METRIC: &str = "drives_saturated_s";
 
 /// As [`validate`], for a cell and each of its passes.
 ///
@@ -90,15 +90,15 @@ pub fn check_cell(
             ..check
         }));
     }
-    let is_set = expectations.iter().any(|own| own.metric == STANDING);
-    let standing = Expectation {
-        metric: STANDING.to_owned(),
+    let is_set = expectations.iter().any(|own| own.metric == IMPLICIT_METRIC);
+    let implicit = Expectation {
+        metric: IMPLICIT_METRIC.to_owned(),
         min: None,
         max: Some(0.0),
     };
     if !is_set && summary.drives_saturated_s.is_some() {
-        let standing = check(METRICS, summary, &[standing])?;
-        checks.extend(standing.into_iter().filter(|check| !check.kept));
+        let implicit = check(METRICS, summary, &[implicit])?;
+        checks.extend(implicit.into_iter().filter(|check| !check.kept));
     }
     Ok(checks)
 }
@@ -215,7 +215,7 @@ mod tests {
         assert_eq!(broken(Some(0.0), &[]), 0);
         assert_eq!(broken(Some(0.038), &[]), 1);
         assert_eq!(broken(None, &[]), 0);
-        let lifted = expectation(STANDING, None, Some(0.1));
+        let lifted = expectation(IMPLICIT_METRIC, None, Some(0.1));
         assert_eq!(broken(Some(0.038), std::slice::from_ref(&lifted)), 0);
         assert_eq!(broken(Some(0.2), &[lifted]), 1);
     }

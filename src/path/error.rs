@@ -166,7 +166,7 @@ pub enum PlanError {
     },
     /// Bodies that stand still stand in each other.
     #[error("{} stands {:.1} mm deep in {}", _0.names[0], 1e3 * _0.depth, _0.names[1])]
-    Standing(Box<Meeting>),
+    Penetration(Box<Meeting>),
     /// A given direction of the tool that stands too far from the bisector.
     #[error("at {:.1} mm along the edge, point ({:.1}, {:.1}, {:.1}) mm, the tool's axis ({:.3}, {:.3}, {:.3}) stands {:.1} deg from the edge's bisector ({:.3}, {:.3}, {:.3}), expected at most {:.0} deg: turn the part, or choose another process.tool_axis",
         1e3 * edge_length, 1e3 * point.x, 1e3 * point.y, 1e3 * point.z, axis.x, axis.y, axis.z, lean.to_degrees(), bisector.x, bisector.y, bisector.z, most.to_degrees())]

@@ -5,7 +5,7 @@ use glamx::DPose3;
 use super::error::PlanError;
 use super::feed;
 use super::poses::{backed_off, places, poses_along};
-use super::posture::{Outline, Standing};
+use super::posture::{MountedArm, Outline};
 use super::profile::Profile;
 use super::request::{KNOT_SPACING, Leg, Pass, Phase, PlanRequest, Way, waypoint_error};
 use super::spline::Spline;
@@ -32,7 +32,7 @@ struct Axial {
 /// The legs as they are laid out.
 pub(super) struct Layout<'a> {
     request: &'a PlanRequest<'a>,
-    standing: &'a Standing<'a>,
+    mounted: &'a MountedArm<'a>,
     /// Joint angles at the end of the last leg [rad].
     angles: Vec<f64>,
     legs: Vec<Leg>,
@@ -47,12 +47,12 @@ impl<'a> Layout<'a> {
     /// The waypoint that is not reached.
     pub(super) fn lay_out(
         request: &'a PlanRequest<'a>,
-        standing: &'a Standing<'a>,
+        mounted: &'a MountedArm<'a>,
         Outline { roll, start, .. }: Outline,
     ) -> Result<(Vec<Leg>, Vec<String>), PlanError> {
         let mut layout = Self {
             request,
-            standing,
+            mounted,
             angles: start,
             legs: Vec::new(),
             pass: 0,
@@ -150,7 +150,7 @@ impl<'a> Layout<'a> {
         poses: &[DPose3],
     ) -> Result<Spline, PlanError> {
         let angles = self
-            .standing
+            .mounted
             .track(poses, &self.angles)
             .map_err(|(index, stop)| {
                 let place = way.place(knots[index], self.request.tool_path.length());
@@ -160,7 +160,7 @@ impl<'a> Layout<'a> {
                     index,
                     poses.len(),
                     place,
-                    self.standing.why(stop),
+                    self.mounted.why(stop),
                 )
             })?;
         if let Some(last) = angles.last() {

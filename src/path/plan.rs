@@ -7,7 +7,7 @@ use super::collisions;
 use super::error::{Obstacle, PlanError};
 use super::legs::Layout;
 use super::poses::Coarse;
-use super::posture::{Outline, SINGULAR_LIMIT, Standing};
+use super::posture::{MountedArm, Outline, SINGULAR_LIMIT};
 use super::profile::PathState;
 use super::reference::Reference;
 use super::request::{Leg, Phase, PlanRequest, Way, waypoint_error};
@@ -23,11 +23,11 @@ const INTERVAL: f64 = 4e-3;
 
 /// The most comfortable rolls and postures, at least one and at most `most`.
 fn outlines(request: &PlanRequest, most: usize) -> Result<Vec<Outline>, PlanError> {
-    let standing = Standing::of(request);
+    let mounted = MountedArm::of(request);
     let coarse = Coarse::new(request);
     let passable = |angles: &[Vec<f64>]| collisions::passable(request, &coarse, angles);
     let blockade = |angles: &[Vec<f64>]| collisions::blockade(request, &coarse, angles);
-    standing
+    mounted
         .choose(
             request,
             |spin| coarse.poses(request, spin),
@@ -89,9 +89,9 @@ impl Plan {
     /// # Errors
     /// As [`Plan::new`].
     pub fn from_outline(request: &PlanRequest, outline: Outline) -> Result<Self, PlanError> {
-        let standing = Standing::of(request);
+        let mounted = MountedArm::of(request);
         let roll = outline.roll;
-        let (legs, notes) = Layout::lay_out(request, &standing, outline)?;
+        let (legs, notes) = Layout::lay_out(request, &mounted, outline)?;
         let plan = Self {
             motion: collisions::motion(request, &legs),
             roll,
@@ -101,7 +101,7 @@ impl Plan {
             joints: request.arm.len(),
             notes,
         };
-        limits(request, &standing, &plan)?;
+        limits(request, &mounted, &plan)?;
         collisions::check(request, &plan.motion, &plan.legs)?;
         Ok(plan)
     }
@@ -182,8 +182,8 @@ impl Plan {
 }
 
 /// Checks the whole plan against the arm's limits: singularities at every knot, speeds and torques over time.
-fn limits(request: &PlanRequest, standing: &Standing, plan: &Plan) -> Result<(), PlanError> {
-    singularities(standing, plan)?;
+fn limits(request: &PlanRequest, mounted: &MountedArm, plan: &Plan) -> Result<(), PlanError> {
+    singularities(mounted, plan)?;
     let count = (plan.duration() / INTERVAL).ceil() as usize;
     for i in 0..=count {
         drives(request, plan, i as f64 * INTERVAL)?;
@@ -191,12 +191,12 @@ fn limits(request: &PlanRequest, standing: &Standing, plan: &Plan) -> Result<(),
     Ok(())
 }
 
-fn singularities(standing: &Standing, plan: &Plan) -> Result<(), PlanError> {
+fn singularities(mounted: &MountedArm, plan: &Plan) -> Result<(), PlanError> {
     for leg in &plan.legs {
         for (index, q) in leg.spline.values().iter().enumerate() {
-            let value = standing.singularity(q);
+            let value = mounted.singularity(q);
             if value < SINGULAR_LIMIT {
-                let axis = standing.weakest_axis(q);
+                let axis = mounted.weakest_axis(q);
                 let obstacle = Obstacle::Singular {
                     value,
                     limit: SINGULAR_LIMIT,

@@ -32,7 +32,7 @@ const FLOOR: f64 = -0.05;
 
 /// An arm that stands somewhere.
 #[derive(Debug, Clone, Copy)]
-pub struct Standing<'a> {
+pub struct MountedArm<'a> {
     /// The arm, base to flange.
     pub chain: &'a KinematicChain,
     /// The arm with the device's slide as its last joint.
@@ -47,7 +47,7 @@ pub struct Standing<'a> {
     pub briefly: bool,
 }
 
-impl<'a> Standing<'a> {
+impl<'a> MountedArm<'a> {
     /// The arm of a request.
     pub fn of(request: &PlanRequest<'a>) -> Self {
         Self {
@@ -61,7 +61,7 @@ impl<'a> Standing<'a> {
     }
 }
 
-impl Standing<'_> {
+impl MountedArm<'_> {
     /// Length by which lengths are scaled against angles [m].
     pub fn characteristic_length(&self) -> f64 {
         0.25 * self.chain.reach()

@@ -48,7 +48,7 @@ pub fn footprints(setup: &Setup, best: Option<(glam::DVec3, Possible)>) -> Vec<F
         let slide = std::iter::once(&stroke);
         start.iter().chain(slide).copied().collect::<Vec<f64>>()
     });
-    for body in setup.collision.standing_at(joints.as_deref()) {
+    for body in setup.collision.placed_at(joints.as_deref()) {
         let kind = match body.role {
             Role::Robot if !body.moves => FootprintKind::Base,
             Role::Robot | Role::Device | Role::Tool => FootprintKind::Link,

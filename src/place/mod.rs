@@ -61,7 +61,7 @@ impl From<&PlanError> for Hindrance {
                 Obstacle::Effort { .. } => Self::Torque,
                 Obstacle::Velocity { .. } => Self::Speed,
             },
-            PlanError::Standing(_) => Self::Collision,
+            PlanError::Penetration(_) => Self::Collision,
             PlanError::Lean { .. } | PlanError::InwardCorner { .. } => Self::Edge,
         }
     }

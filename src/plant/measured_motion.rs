@@ -34,7 +34,7 @@ const FAR_WORSE: f64 = 2.0;
 /// Readings that a cubic needs at least.
 const LEAST: usize = 6;
 /// Share of the readings, away from the ends, that are predicted to choose a half-width: one in so many, for the long recordings.
-const JUDGED: usize = 4000;
+const CHECKED_SAMPLES: usize = 4000;
 
 impl MeasuredMotion {
     /// From readings of the stroke [m] at increasing times [s]; NaN where there is none.
@@ -94,7 +94,7 @@ impl MeasuredMotion {
 
 /// The largest half-width [s] that predicts readings from the others about as well as the best.
 fn best_width(known: &[(f64, f64)], usual: f64) -> f64 {
-    let every = known.len().div_ceil(JUDGED);
+    let every = known.len().div_ceil(CHECKED_SAMPLES);
     let mut tried: Vec<(f64, f64)> = Vec::new();
     let mut least = f64::INFINITY;
     let mut width = NARROWEST * usual;

@@ -34,7 +34,7 @@ pub enum ProofError {
     },
     /// Outcomes of another sweep stand there.
     #[error("{} holds outcomes already: --resume goes on with them, --force puts new ones in their place, another --out starts anew", folder.display())]
-    Standing {
+    OutcomesExist {
         /// The folder.
         folder: PathBuf,
     },

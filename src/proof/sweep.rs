@@ -175,18 +175,18 @@ pub(super) fn carry_out<O: Serialize + DeserializeOwned + Send>(
 ) -> Result<Vec<O>, ProofError> {
     let folder = course.out.join(OUTCOMES);
     if !course.resume && !course.replace && folder.exists() {
-        return Err(ProofError::Standing { folder });
+        return Err(ProofError::OutcomesExist { folder });
     }
     std::fs::create_dir_all(&folder).map_err(|cause| ProofError::read(&folder, cause))?;
     let done = AtomicUsize::new(0);
     let finished = queue::all(names.len(), course.jobs, |index| {
         let name = &names[index];
         let path = folder.join(format!("{name}.json"));
-        let stands = match course.replace {
+        let exists = match course.replace {
             true => None,
-            false => standing(&path, made.0, &made.1[index])?,
+            false => existing(&path, made.0, &made.1[index])?,
         };
-        let outcome = match stands {
+        let outcome = match exists {
             Some(outcome) => outcome,
             None => {
                 let outcome = attempt(index)?;
@@ -215,7 +215,7 @@ pub(super) fn carry_out<O: Serialize + DeserializeOwned + Send>(
 }
 
 /// The outcome that stands in a file already, if it is of this case.
-fn standing<O: DeserializeOwned>(
+fn existing<O: DeserializeOwned>(
     path: &Path,
     making: &dyn Fn(&O) -> Made,
     made: &Made,
@@ -334,8 +334,8 @@ mod tests {
             "no case is left"
         );
 
-        let standing = sweep(&plan, &out, &diagnose, &|_, _, _| ()).unwrap_err();
-        assert!(matches!(standing, ProofError::Standing { .. }));
+        let existing = sweep(&plan, &out, &diagnose, &|_, _, _| ()).unwrap_err();
+        assert!(matches!(existing, ProofError::OutcomesExist { .. }));
         plan.replace = true;
         let again = sweep(&plan, &out, &diagnose, &|_, _, _| ()).unwrap();
         assert_eq!((again.len(), asked.load(Ordering::Relaxed)), (3, 6));

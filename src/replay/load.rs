@@ -79,7 +79,7 @@ impl LoadedCell {
     pub fn plant(&self) -> PlantParameters {
         let mut plant = PlantParameters::clone(&self.scenario.nominal);
         for effect in &self.scenario.effects {
-            effect.put_into(&mut plant);
+            effect.apply_to(&mut plant);
         }
         plant
     }

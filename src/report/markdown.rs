@@ -114,14 +114,14 @@ fn expectations(out: &mut String, verdicts: &[BoundCheck]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::test_summaries::{judged, nominal};
+    use super::super::test_summaries::{checked, nominal};
     use super::*;
 
     #[test]
     fn tables_are_rectangular_whatever_the_names() {
         let mut summary = nominal();
         summary.most_loaded_joint = Some("a|b\n*c*".into());
-        let out = markdown("edge | 1\n# two", &summary, &judged(&summary));
+        let out = markdown("edge | 1\n# two", &summary, &checked(&summary));
         assert!(out.starts_with("# edge \\| 1 \\# two\n"), "{out}");
         let cells = |line: &str| line.replace("\\|", "").matches('|').count();
         for line in out.lines().filter(|line| line.starts_with('|')) {

@@ -54,7 +54,7 @@ pub(super) fn nominal() -> Summary {
 }
 
 /// One expectation that the run above keeps and one that it does not.
-pub(super) fn judged(summary: &Summary) -> Vec<BoundCheck> {
+pub(super) fn checked(summary: &Summary) -> Vec<BoundCheck> {
     let expectation = |metric: &str, min, max| Expectation {
         metric: metric.into(),
         min,

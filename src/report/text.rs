@@ -170,13 +170,13 @@ fn widest<'a>(texts: impl Iterator<Item = &'a str>) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::super::test_summaries::{judged, nominal};
+    use super::super::test_summaries::{checked, nominal};
     use super::*;
 
     #[test]
     fn it_fits_a_terminal() {
         for summary in [nominal(), Summary::default()] {
-            let out = text("plate edge", &summary, &judged(&summary), Style::Plain);
+            let out = text("plate edge", &summary, &checked(&summary), Style::Plain);
             for line in out.lines() {
                 let columns = line.chars().count();
                 let far = line.contains("the desired force: ");
@@ -193,7 +193,7 @@ mod tests {
     #[test]
     fn colours_change_nothing_but_the_colours() {
         let summary = nominal();
-        let verdicts = judged(&summary);
+        let verdicts = checked(&summary);
         let mut coloured = text("plate edge", &summary, &verdicts, Style::Coloured);
         for code in ["1", "2", "32", "1;31", "0"] {
             coloured = coloured.replace(&format!("\x1b[{code}m"), "");
@@ -210,7 +210,7 @@ mod tests {
     #[test]
     fn numbers_stand_in_their_rows() {
         let summary = nominal();
-        let out = text("plate edge", &summary, &judged(&summary), Style::Plain);
+        let out = text("plate edge", &summary, &checked(&summary), Style::Plain);
         let line = |part: &str| {
             out.lines()
                 .find(|line| line.contains(part))

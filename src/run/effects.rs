@@ -16,8 +16,8 @@ pub fn nominal_of(
         AnyScenario::Bench(bench) => (bench.nominal, 1),
         AnyScenario::Cell(cell) => {
             let cell = Cell::new(*cell)?;
-            let telling = cell.telling_joint();
-            (cell.setup.scenario.nominal, telling)
+            let most_observable = cell.most_observable_joint();
+            (cell.setup.scenario.nominal, most_observable)
         }
     })
 }
@@ -26,17 +26,17 @@ pub fn nominal_of(
 ///
 /// # Errors
 /// Those of [`nominal_of`], and an effect that cannot be put in as it is asked for.
-pub fn put_in(
+pub fn apply_effects(
     requests: &[EffectRequest],
     template: &ScenarioTemplate,
 ) -> Result<Vec<KeyValue>, RunError> {
     if requests.is_empty() {
         return Ok(Vec::new());
     }
-    let (nominal, telling) = nominal_of(template)?;
+    let (nominal, most_observable) = nominal_of(template)?;
     let mut edits = Vec::new();
     for request in requests {
-        let own = request.edits(&nominal, telling);
+        let own = request.edits(&nominal, most_observable);
         edits.extend(own.map_err(|reason| RunError::With { reason })?);
     }
     Ok(edits)

@@ -18,6 +18,6 @@ mod job;
 
 pub use bench::{FinishedBench, run_bench};
 pub use cell::{FinishedCell, run_cell};
-pub use effects::{nominal_of, put_in};
+pub use effects::{apply_effects, nominal_of};
 pub use error::RunError;
 pub use job::{Job, Outcome};

@@ -6,8 +6,8 @@ use glam::{DQuat, DVec3};
 use glamx::DPose3;
 use serde::Deserialize;
 
+use super::assumed::AssumedValue;
 use super::controller::ControllerScenario;
-use super::judged::JudgedValue;
 use crate::effects::PresentEffect;
 use crate::keys::declaration::{Below, Filled, keys};
 use crate::keys::schema::type_schema;
@@ -55,7 +55,7 @@ pub struct Scenario {
     /// Physics beyond the cell, as a diagnosis writes it into improved.toml, with all its numbers; nothing that is simulated.
     pub effects: Vec<PresentEffect>,
     /// Values of tool and edge in use that nobody has measured in public; those of the device are with it.
-    pub judged: Vec<JudgedValue>,
+    pub assumed: Vec<AssumedValue>,
 }
 
 impl Scenario {
@@ -67,8 +67,8 @@ impl Scenario {
     }
 
     /// Values in use that nobody has measured in public: of tool and edge, then of the device.
-    pub fn judged_values(&self) -> impl Iterator<Item = &JudgedValue> {
-        self.judged.iter().chain(&self.device.judged)
+    pub fn assumed_values(&self) -> impl Iterator<Item = &AssumedValue> {
+        self.assumed.iter().chain(&self.device.assumed)
     }
 }
 
@@ -115,7 +115,7 @@ pub struct DeviceScenario {
     /// Whether the slide is clamped at the working stroke.
     pub locked: bool,
     /// Values in use that nobody has measured in public.
-    pub judged: Vec<JudgedValue>,
+    pub assumed: Vec<AssumedValue>,
 }
 
 /// The workpiece.

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::DeviceScenario;
+use super::assumed;
 use super::file::{ModelFile, SCHEMA};
-use super::judged;
 use crate::keys::check::Section;
 use crate::keys::declaration::Table;
 use crate::keys::document::{Document, read_text};
@@ -43,7 +43,7 @@ pub(super) fn load_with_overrides(
     };
     let known = ModelKeys::keys();
     if let Some(unknown) =
-        (file.judged.iter()).find(|key| !known.iter().any(|own| own.name == **key))
+        (file.assumed.iter()).find(|key| !known.iter().any(|own| own.name == **key))
     {
         let expected = "keys of [device]".to_owned();
         return Err(Section::new(&document, "").refuse("judged", format!("{unknown:?}"), expected));
@@ -64,8 +64,8 @@ pub(super) fn load_with_overrides(
         model: path.to_path_buf(),
         locked: false,
         ideal,
-        judged: judged::of_model(&file.judged, &file.device.numbers, |key| {
-            model.stands_above(key)
+        assumed: assumed::of_model(&file.assumed, &file.device.numbers, |key| {
+            model.is_overridden(key)
         }),
     };
     model.check()?;
@@ -130,7 +130,7 @@ impl<'a> Layers<'a> {
     }
 
     /// Whether something else counts than what the model file says of a key.
-    fn stands_above(&self, key: &str) -> bool {
+    fn is_overridden(&self, key: &str) -> bool {
         let mut above = self.layers.iter().rev().skip(1);
         let mut numbers = registry::all().filter(|number| number.device_key == Some(key));
         above.any(|(section, _)| section.given().any(|own| own == key))

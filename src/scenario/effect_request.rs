@@ -69,9 +69,11 @@ impl EffectRequest {
     pub fn edits(
         &self,
         believed: &PlantParameters,
-        telling: usize,
+        most_observable_joint: usize,
     ) -> Result<Vec<KeyValue>, String> {
-        let wanted = self.is_of_joint().then(|| self.joint.unwrap_or(telling));
+        let wanted = self
+            .is_of_joint()
+            .then(|| self.joint.unwrap_or(most_observable_joint));
         let is_it = |effect: &&'static Effect| effect.vocabulary() == (&*self.name, wanted);
         let effect = every().find(is_it).ok_or_else(|| {
             let joint = wanted.unwrap_or_default();
@@ -81,11 +83,11 @@ impl EffectRequest {
         let names: Vec<&str> = parameters.iter().map(|p| p.quantity.name).collect();
         let mut values = effect.usual(believed);
         for (key, value) in &self.numbers {
-            let stands = |name: &&str| Unit::convert(key, *value, name);
+            let converted = |name: &&str| Unit::convert(key, *value, name);
             if let Some((place, value)) = names
                 .iter()
                 .enumerate()
-                .find_map(|(i, name)| Some((i, stands(name)?)))
+                .find_map(|(i, name)| Some((i, converted(name)?)))
             {
                 values[place] = value;
                 continue;

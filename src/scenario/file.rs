@@ -155,7 +155,7 @@ keys! {
         /// version of this format
         schema: u32 = "schema" in 1..=2;
         /// keys of its values that rest on no public measurement; reports say where such a value is in use
-        judged: Vec<String> = "judged", shown "none";
+        assumed: Vec<String> = "judged", shown "none";
         device: ModelKeys = "device";
     }
 
@@ -196,7 +196,7 @@ keys! {
         /// which of the keys below there are
         kind: BurrKind = "kind";
         /// thickness of its root, of which a turning tool takes the section; 0.05 to 0.3 is usual
-        root: f64 = "root_mm" for "constant" | "random" | "bump" | "table" in 0.001..=5.0, from USUAL_ROOT, judged "leg of the chamfer and burr that is left";
+        root: f64 = "root_mm" for "constant" | "random" | "bump" | "table" in 0.001..=5.0, from USUAL_ROOT, assumed "leg of the chamfer and burr that is left";
         /// height
         height: Option<f64> = "height_mm" for "constant" | "bump" in 0..=10;
         /// mean height
@@ -222,7 +222,7 @@ keys! {
         /// largest leg of a good chamfer
         leg_max: f64 = "leg_max_mm" in 0.0..=f64::INFINITY, or f64::INFINITY;
         /// burr that may be left, which is not felt by a finger any more
-        residual_burr: f64 = "residual_burr_max_mm" in 0..=5, or 0.02, judged "share out of tolerance";
+        residual_burr: f64 = "residual_burr_max_mm" in 0..=5, or 0.02, assumed "share out of tolerance";
     }
 
     /// `[[pass]]`: one along the edge; what is not given is as in `[process]`.
@@ -268,11 +268,11 @@ keys! {
         /// in proportion to force and speed, the same above a threshold force, or powers of them
         law: RemovalWord = "law";
         /// volume per work of normal force and speed
-        coefficient: Option<f64> = "coefficient_mm3_per_j" for "preston" | "threshold" in 1e-9..=1e3, judged "leg of the chamfer and burr that is left";
+        coefficient: Option<f64> = "coefficient_mm3_per_j" for "preston" | "threshold" in 1e-9..=1e3, assumed "leg of the chamfer and burr that is left";
         /// force below which nothing comes off; 0 when left out of *power*
-        threshold_force: Option<f64> = "threshold_force_n" for "threshold" | "power" in 0..=5000, shown "required", judged "leg of the chamfer and burr that is left";
+        threshold_force: Option<f64> = "threshold_force_n" for "threshold" | "power" in 0..=5000, shown "required", assumed "leg of the chamfer and burr that is left";
         /// removal rate at the reference point
-        rate: Option<f64> = "rate_mm3_per_s" for "power" in 1e-9..=1e6, judged "leg of the chamfer and burr that is left";
+        rate: Option<f64> = "rate_mm3_per_s" for "power" in 1e-9..=1e6, assumed "leg of the chamfer and burr that is left";
         /// of the reference point, more than the threshold
         reference_force: Option<f64> = "reference_force_n" for "power" in 0.001..=5000.0;
         /// of the reference point
@@ -288,15 +288,15 @@ keys! {
         /// contact area
         contact_area: f64 = "contact_area_mm2" for "power" in 1e-3..=1e4, else reference_area, shown "that of the reference point";
         /// work of force and speed after which the tool takes off 1/e of what a new one does; inf for one that does not wear
-        wear_work: f64 = "wear_work_kj" in 1e-3..=f64::INFINITY, or f64::INFINITY, judged "leg of the chamfer and burr that is left";
+        wear_work: f64 = "wear_work_kj" in 1e-3..=f64::INFINITY, or f64::INFINITY, assumed "leg of the chamfer and burr that is left";
         /// work that the tool has done before: `tool_wear_kj` at the end of an earlier run
-        wear_at_start: f64 = "wear_at_start_kj" in 0.0..=1e6, or 0.0, judged "leg of the chamfer and burr that is left";
+        wear_at_start: f64 = "wear_at_start_kj" in 0.0..=1e6, or 0.0, assumed "leg of the chamfer and burr that is left";
         /// length of edge on which the tool touches at a time
-        contact_length: f64 = "contact_length_mm" in 0.1..=100.0, or 1.0, judged "leg of the chamfer and burr that is left";
+        contact_length: f64 = "contact_length_mm" in 0.1..=100.0, or 1.0, assumed "leg of the chamfer and burr that is left";
         /// energy that a volume takes: of an abrasive on steel 10 to 60, of a sharp burr tool on aluminium 1 to 3
-        specific_energy: f64 = "specific_energy_j_per_mm3" in 0..=1000, or 20.0, judged "spindle torque and power";
+        specific_energy: f64 = "specific_energy_j_per_mm3" in 0..=1000, or 20.0, assumed "spindle torque and power";
         /// of what rubs
-        friction: f64 = "friction_coefficient" in 0..=2, or 0.3, judged "spindle torque and power";
+        friction: f64 = "friction_coefficient" in 0..=2, or 0.3, assumed "spindle torque and power";
     }
 
     /// `[collision]`.

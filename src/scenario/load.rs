@@ -5,13 +5,13 @@ use std::path::Path;
 
 use glam::DVec3;
 
+use super::assumed;
 use super::cell::ContactKeys;
 use super::collision::collision;
 use super::controller::{ForceLaw, controller};
 use super::device::load_with_overrides;
 use super::effects::{EffectKeys, effects};
 use super::file::{self, ScenarioFile};
-use super::judged;
 use super::sensing::sensing;
 use super::tool;
 use super::workpiece::workpiece;
@@ -69,7 +69,7 @@ pub(super) fn from_document(
         simulation: file.simulation,
         expect: expectations(&section("expect"), &file.expect)?,
         effects: of_whole(document, &file.effect, &nominal)?,
-        judged: judged::of_cell(document, &tables::<ScenarioFile>()),
+        assumed: assumed::of_cell(document, &tables::<ScenarioFile>()),
         nominal: Nominal(nominal),
         device,
     })

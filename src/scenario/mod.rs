@@ -1,6 +1,7 @@
 //! A scenario: what to simulate, in strict SI, checked. `file` mirrors the TOML file, `document` finds its way in it, `load` turns it into this.
 
 mod any;
+mod assumed;
 pub mod bench;
 mod bench_file;
 mod cell;
@@ -12,7 +13,6 @@ mod effect_request;
 pub mod effects;
 mod estimator;
 mod file;
-mod judged;
 mod load;
 pub mod recorded_cell;
 pub mod removal_table;
@@ -29,6 +29,7 @@ mod workpiece;
 
 pub use crate::keys::error::ScenarioError;
 pub use any::{AnyScenario, keys_given, load, load_any, load_bench, place_of};
+pub use assumed::AssumedValue;
 pub use bench::BenchScenario;
 pub use cell::{
     ArmScenario, BurrScenario, ChamferScenario, CollisionScenario, DeviceScenario, Direction,
@@ -40,7 +41,6 @@ pub use cell_files::files_of_cell;
 pub use controller::{ControllerScenario, ForceLaw, attainable_set_pressure};
 pub use device::load_device;
 pub use effect_request::EffectRequest;
-pub use judged::JudgedValue;
 pub use recorded_cell::{RecordedCell, load_recorded_cell};
 pub use sensing::largest_set_pressure;
 pub use variation::{KeyValue, ScenarioTemplate, led_to, listed};

@@ -32,7 +32,7 @@ pub(super) fn bench_device(
         model,
         locked: keys.locked,
         ideal: false,
-        judged: Vec::new(),
+        assumed: Vec::new(),
     };
     Ok((device, rig.plant))
 }

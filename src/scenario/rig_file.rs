@@ -113,7 +113,7 @@ pub fn from_text(path: &Path, text: &str) -> Result<RigFile, ScenarioError> {
     let effects = effects(&document, &keys.effect, &candidates(plant.parts), &plant)?;
     let bare = plant.clone();
     for effect in &effects {
-        effect.put_into(&mut plant);
+        effect.apply_to(&mut plant);
     }
     plant.latent = latent::latent(&document, keys.latent.as_ref())?;
     let known = known::known(&document, keys.known.take(), &plant, &effects)?;

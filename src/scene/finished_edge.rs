@@ -137,7 +137,7 @@ impl FinishedEdge {
             (false, true) => format!("at most {most} mm"),
             (false, false) => "any leg".to_owned(),
         };
-        let standing = match self.course.is_empty() {
+        let burr_row = match self.course.is_empty() {
             true => "",
             false => "| `/cell/edge/burr` | bronze: height of the burr that stands at the time |\n",
         };
@@ -146,7 +146,7 @@ impl FinishedEdge {
              Drawn {factor} times as large as it is.\n\n\
              | entity | what it shows |\n| --- | --- |\n\
              | `/cell/edge/before` | grey: height of the burr before any work |\n\
-             {standing}| `/cell/edge/after` | leg of the chamfer, on either face. Green: within the tolerance, {tolerance}. Blue: too little, full where there is no \
+             {burr_row}| `/cell/edge/after` | leg of the chamfer, on either face. Green: within the tolerance, {tolerance}. Blue: too little, full where there is no \
              chamfer. Orange: too much, full at twice the largest |\n\
              | `/cell/edge/residual_burr` | purple: height of the burr that is left where it is more than {} mm |\n",
             1e3 * self.burr_limit

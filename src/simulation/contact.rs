@@ -25,7 +25,7 @@ use crate::workpiece::{ContactSurface, SurfaceContact, TriangleMesh};
 /// Distance ahead of touching at which a contact is offered to the slide [m].
 const REACH: f64 = 1e-3;
 /// Natural frequency of a contact that carries a given force [rad/s].
-const CARRIER_RATE: f64 = 0.1;
+const CONSTANT_LOAD_RATE: f64 = 0.1;
 
 /// The ball nose of the tool on the last link.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,7 +74,7 @@ impl PartContact {
         let contacts = TrueContacts::default();
         physics.narrow_phase = NarrowPhase::with_query_dispatcher(contacts.clone());
         physics.integration_parameters.static_contact_softness =
-            SpringCoefficients::new(CARRIER_RATE / std::f64::consts::TAU, 0.0);
+            SpringCoefficients::new(CONSTANT_LOAD_RATE / std::f64::consts::TAU, 0.0);
         // Rapier takes no more from it than its box, to know when the pair is near; `surface` knows the mesh.
         let mesh = ColliderBuilder::trimesh(part.vertices().to_vec(), part.triangles().to_vec())
             .expect("a part's mesh holds at least one triangle")
@@ -147,7 +147,7 @@ impl PartContact {
         let separation = |&(normal, force): &(DVec3, f64)| {
             let point = centre - normal * self.tool.radius;
             let mass = self.effective_mass(physics, joint, tool_body, normal, point);
-            let stiffness = mass.unwrap_or(1.0) * CARRIER_RATE * CARRIER_RATE;
+            let stiffness = mass.unwrap_or(1.0) * CONSTANT_LOAD_RATE * CONSTANT_LOAD_RATE;
             TrueContact {
                 normal,
                 separation: -force / stiffness,

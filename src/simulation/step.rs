@@ -104,8 +104,8 @@ pub struct Simulation<'a> {
     /// The tool's cutting, if it turns.
     cutting: Option<Cutting>,
     /// Time by which the plan is behind the clock, where the feed follows what is measured [s], and its rate [1].
-    behind: f64,
-    pace: f64,
+    feed_lag: f64,
+    feed_override: f64,
 }
 
 impl<'a> Simulation<'a> {
@@ -185,8 +185,8 @@ impl<'a> Simulation<'a> {
             next_frame: 0.0,
             clearance: start::clearance(cell, &positions),
             cutting: Cutting::new(cell),
-            behind: 0.0,
-            pace: 1.0,
+            feed_lag: 0.0,
+            feed_override: 1.0,
         }
     }
 
@@ -202,8 +202,8 @@ impl<'a> Simulation<'a> {
 
     /// Whether the job is done, or was stopped by an error.
     pub fn done(&self) -> bool {
-        let behind = self.behind / self.cell.setup.scenario.simulation.step;
-        self.stopped || self.steps as f64 >= self.total_steps as f64 + behind.ceil()
+        let feed_lag = self.feed_lag / self.cell.setup.scenario.simulation.step;
+        self.stopped || self.steps as f64 >= self.total_steps as f64 + feed_lag.ceil()
     }
 
     /// The record so far.
@@ -258,12 +258,12 @@ impl<'a> Simulation<'a> {
             lap(|t| &mut t.reference);
             let slide = self.advance_slide(set_pressure, start, dt);
             lap(|t| &mut t.slide);
-            let told = self.told(&middle, dt);
-            self.set_laws(&told, slide.device, dt);
+            let drive_commands = self.drive_commands(&middle, dt);
+            self.set_laws(&drive_commands, slide.device, dt);
             lap(|t| &mut t.servo);
             self.cut(dt);
             self.move_bodies(&slide, dt);
-            self.note_drives(&told, start, dt);
+            self.note_drives(&drive_commands, start, dt);
             self.touch(&reference, dt);
             lap(|t| &mut t.rigid_bodies);
         }
@@ -294,15 +294,16 @@ impl<'a> Simulation<'a> {
                 }
                 _ => 1.0,
             };
-            self.pace += (wanted - self.pace) * (-(-dt / follows.time_constant).exp_m1());
-            self.behind += (1.0 - self.pace) * dt;
+            self.feed_override +=
+                (wanted - self.feed_override) * (-(-dt / follows.time_constant).exp_m1());
+            self.feed_lag += (1.0 - self.feed_override) * dt;
         }
-        let mut reference = self.cell.plan.reference(start + dt - self.behind);
-        if self.pace < 1.0 {
-            reference.feed *= self.pace;
+        let mut reference = self.cell.plan.reference(start + dt - self.feed_lag);
+        if self.feed_override < 1.0 {
+            reference.feed *= self.feed_override;
             for axis in 0..MAX_JOINTS {
-                reference.velocity[axis] *= self.pace;
-                reference.acceleration[axis] *= self.pace * self.pace;
+                reference.velocity[axis] *= self.feed_override;
+                reference.acceleration[axis] *= self.feed_override * self.feed_override;
             }
         }
         reference
@@ -397,14 +398,14 @@ impl<'a> Simulation<'a> {
     }
 
     /// Commands of the drives: the reference, as far as they lag behind it.
-    fn told(&mut self, reference: &Reference, dt: f64) -> Reference {
-        let mut told = *reference;
+    fn drive_commands(&mut self, reference: &Reference, dt: f64) -> Reference {
+        let mut drive_commands = *reference;
         for (axis, lag) in self.lags.iter_mut().enumerate() {
-            told.acceleration[axis] = lag.advance(reference.position[axis], dt);
-            told.position[axis] = lag.position;
-            told.velocity[axis] = lag.velocity;
+            drive_commands.acceleration[axis] = lag.advance(reference.position[axis], dt);
+            drive_commands.position[axis] = lag.position;
+            drive_commands.velocity[axis] = lag.velocity;
         }
-        told
+        drive_commands
     }
 
     /// Laws of all degrees of freedom: the axes' servo with feed-forward, the device on the slide.
@@ -456,7 +457,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// What the drives gave over a part of the step that began at a time [s], and whether a limit cut them.
-    fn note_drives(&mut self, told: &Reference, start: f64, dt: f64) {
+    fn note_drives(&mut self, drive_commands: &Reference, start: f64, dt: f64) {
         let time = start + dt;
         let mut off: f64 = 0.0;
         for axis in 0..self.slide() {
@@ -470,11 +471,12 @@ impl<'a> Simulation<'a> {
             self.servo.hold(axis, cut);
             let offset = self.cell.setup.actual.cell.encoder_offset[axis];
             // Told is the middle of the step.
-            let commanded = told.position[axis] + 0.5 * dt * told.velocity[axis] - offset;
+            let commanded =
+                drive_commands.position[axis] + 0.5 * dt * drive_commands.velocity[axis] - offset;
             off = off.max((commanded - angle).abs());
             if cut {
                 let joint = &self.cell.setup.arm.chain.joints[axis];
-                self.saturation.note(joint, time, told.phase);
+                self.saturation.note(joint, time, drive_commands.phase);
             }
         }
         self.saturation.settle(off, time);

@@ -24,7 +24,7 @@ use crate::plant::{Relief, Touch};
 use crate::workpiece::TriangleMesh;
 
 /// Stiffness of the spring that carries a constant force [N/m or N m/rad]: too soft to act as a spring.
-const CARRIER_STIFFNESS: f64 = 1e-3;
+const CONSTANT_LOAD_STIFFNESS: f64 = 1e-3;
 
 /// Description from which the world is built.
 pub struct WorldDescription<'a> {
@@ -305,7 +305,7 @@ impl World {
                 let stiffness = theta * theta * law.stiffness;
                 (stiffness, q + force / stiffness)
             } else {
-                (CARRIER_STIFFNESS, q + force / CARRIER_STIFFNESS)
+                (CONSTANT_LOAD_STIFFNESS, q + force / CONSTANT_LOAD_STIFFNESS)
             };
             let (axis, link) = (self.axes[i], self.links[i]);
             let multibody = self.multibody_mut();

@@ -94,17 +94,17 @@ pub fn dask(dask: &Dask, plan: &Path, of: usize, told: &dyn Fn(Told)) -> Result<
             Err(_) => (),
         }
     }
-    let ended = driver.0.wait();
+    let status = driver.0.wait();
     let words = last_words.join().unwrap_or_default();
-    match (ended, failed.first()) {
+    match (status, failed.first()) {
         (Ok(status), None) if status.success() => Ok(()),
         (Ok(status), Some(first)) if status.success() => Err(TaskError::Failed {
             failed: failed.len(),
             of,
             first: first.clone(),
         }),
-        (ended, _) => Err(TaskError::DriverEnded {
-            how: ended.map_or_else(|e| e.to_string(), |status| status.to_string()),
+        (status, _) => Err(TaskError::DriverExited {
+            how: status.map_or_else(|e| e.to_string(), |status| status.to_string()),
             told: words,
         }),
     }

@@ -91,7 +91,7 @@ pub enum TaskError {
     #[error(
         "the driver of Dask ended early ({how}): {told}; finished tasks are kept, and the same command with --resume does the others"
     )]
-    DriverEnded {
+    DriverExited {
         /// Its exit.
         how: String,
         /// Its last words.

@@ -20,28 +20,28 @@ struct Queue {
     failed: Vec<String>,
     /// Names of those that failed: what begins with one fails too, also where it is read later.
     lost: HashSet<String>,
-    ended: Option<TaskError>,
+    error: Option<TaskError>,
 }
 
 impl Queue {
     /// The next task that is not done and can be begun; none where there is none now.
     fn next(&mut self, store: &Store) -> Option<Task> {
         loop {
-            if self.ended.is_some() {
+            if self.error.is_some() {
                 return None;
             }
             if let Some(task) = self.ready.pop_front() {
                 return Some(task);
             }
             match self.plan.next()? {
-                Err(error) => self.ended = Some(error),
-                Ok(task) if store.stands(&task.id) => self.done += 1,
+                Err(error) => self.error = Some(error),
+                Ok(task) if store.exists(&task.id) => self.done += 1,
                 Ok(task) => match &task.after {
                     Some(after) if self.lost.contains(after) => {
                         let reason = format!("the task that it begins with failed: {after}");
                         self.fail(&task.id, &reason);
                     }
-                    Some(after) if !store.stands(after) => {
+                    Some(after) if !store.exists(after) => {
                         self.waiting.entry(after.clone()).or_default().push(task);
                     }
                     _ => return Some(task),
@@ -81,7 +81,7 @@ pub fn local(
         done: 0,
         failed: Vec::new(),
         lost: HashSet::new(),
-        ended: None,
+        error: None,
     });
     let changed = Condvar::new();
     std::thread::scope(|scope| {
@@ -90,7 +90,7 @@ pub fn local(
         }
     });
     let queue = queue.into_inner().unwrap_or_else(PoisonError::into_inner);
-    match (queue.ended, queue.failed.first()) {
+    match (queue.error, queue.failed.first()) {
         (Some(error), _) => Err(error),
         (None, Some(first)) => Err(TaskError::Failed {
             failed: queue.failed.len(),
@@ -117,7 +117,7 @@ fn worker(
             told(Told::Done(own.done));
         }
         let Some(task) = next else {
-            if own.running == 0 || own.ended.is_some() {
+            if own.running == 0 || own.error.is_some() {
                 changed.notify_all();
                 return;
             }
@@ -136,7 +136,7 @@ fn worker(
                 own.ready.extend(freed);
                 told(Told::Done(own.done));
             }
-            Ok(Err(error)) => own.ended = Some(error),
+            Ok(Err(error)) => own.error = Some(error),
             Err(_) => own.fail(
                 &task.id,
                 "a fault of the program, see above; please report it",
@@ -184,7 +184,7 @@ mod tests {
         let begun = Mutex::new(Vec::new());
         let work = |task: &Task| {
             if let Some(after) = &task.after {
-                assert!(store.stands(after));
+                assert!(store.exists(after));
             }
             begun.lock().unwrap().push(task.id.clone());
             Ok(store.put(&task.id, &[], "{}")?)

@@ -60,7 +60,7 @@ impl Store {
 
     /// Whether a task is done.
     #[must_use]
-    pub fn stands(&self, id: &str) -> bool {
+    pub fn exists(&self, id: &str) -> bool {
         self.folder(id).join(RESULT).is_file()
     }
 
@@ -92,7 +92,7 @@ impl Store {
         let target = self.folder(id);
         match unfinished.become_folder(&target) {
             // Another was quicker, with the same.
-            Err(_) if self.stands(id) => Ok(()),
+            Err(_) if self.exists(id) => Ok(()),
             done => done,
         }
     }
@@ -107,18 +107,18 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let store = Store::of(&folder.path().join("plan.jsonl"));
         store.make().unwrap();
-        assert!(!store.stands("a"));
+        assert!(!store.exists("a"));
         // As Snakemake leaves it before it begins.
         std::fs::create_dir(store.folder("a")).unwrap();
         let others = [("model.toml".to_owned(), "x = 1".to_owned())];
         store.put("a", &others, "{\"code\":0}").unwrap();
-        assert!(store.stands("a") && store.folder("a").join("model.toml").is_file());
+        assert!(store.exists("a") && store.folder("a").join("model.toml").is_file());
         store.put("a", &[], "{\"code\":1}").unwrap();
         let read: serde_json::Value = store.read("a").unwrap();
         assert_eq!(read["code"], 0);
         let left = std::fs::read_dir(store.path()).unwrap().count();
         assert_eq!(left, 1);
         store.clear().unwrap();
-        assert!(!store.stands("a"));
+        assert!(!store.exists("a"));
     }
 }

@@ -23,7 +23,7 @@ pub(super) const BURR: &str = "/cell/edge/burr";
 
 /// Colour of the burr before any work, seen through, and of that which stands.
 const GONE: Colour = [170, 170, 170, 90];
-const STANDING: Colour = [214, 150, 72, 255];
+const BURR_COLOUR: Colour = [214, 150, 72, 255];
 /// Half width of the residual burr's line on the screen [points].
 const RESIDUAL_RADIUS: f32 = 2.0;
 /// Lift of the chamfer's ribbon off its face, so that the face does not shine through [m].
@@ -40,7 +40,7 @@ pub(super) fn write_finished_edge(
     };
     let stations: Vec<usize> = (0..edge.points_in_world.len()).collect();
     if edge.burr_before.iter().any(|height| *height > 0.0) {
-        let burr = standing_burr(edge, &stations, &edge.burr_before);
+        let burr = burr_at(edge, &stations, &edge.burr_before);
         rrd.add_static(BEFORE, &burr.with_albedo_factor(*rerun_colour(GONE)))?;
     }
     let residual = residual_burr(edge);
@@ -52,12 +52,12 @@ pub(super) fn write_finished_edge(
         Some(axes) => {
             for moment in &edge.course {
                 let at = |entity: &'static str| (entity, axes.columns(&[moment.sample]));
-                let burr = standing_burr(edge, &moment.stations, &moment.burr);
+                let burr = burr_at(edge, &moment.stations, &moment.burr);
                 let (entity, times) = at(BURR);
                 rrd.add_row(
                     entity,
                     times,
-                    &burr.with_albedo_factor(*rerun_colour(STANDING)),
+                    &burr.with_albedo_factor(*rerun_colour(BURR_COLOUR)),
                 )?;
                 let (entity, times) = at(AFTER);
                 rrd.add_row(entity, times, &chamfer(edge, &moment.stations, &moment.leg))?;
@@ -76,7 +76,7 @@ fn tip(edge: &FinishedEdge, station: usize, height: f64) -> DVec3 {
 }
 
 /// A ribbon that stands on the edge at stations, as high as the burr there [m].
-fn standing_burr(edge: &FinishedEdge, stations: &[usize], heights: &[f64]) -> Mesh3D {
+fn burr_at(edge: &FinishedEdge, stations: &[usize], heights: &[f64]) -> Mesh3D {
     let rows = stations.iter().zip(heights);
     ribbon(rows.map(|(i, height)| [edge.points_in_world[*i], tip(edge, *i, *height)]))
 }

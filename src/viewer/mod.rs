@@ -13,7 +13,6 @@ mod colours;
 mod fingerprint;
 mod finished_edge;
 mod footer;
-mod growing;
 mod layout;
 mod live;
 mod options;
@@ -21,15 +20,16 @@ mod plots;
 mod rrd;
 mod shading;
 mod signals;
+mod streaming;
 mod timelines;
 mod view_box;
 
 pub use board::write_board;
 pub use check::{RrdFault, check_rrd, viewer_version};
-pub use growing::{EncodedRrd, GrowingRrd, PART_SAMPLES};
 pub use live::{LiveOutlet, LiveRecording};
 pub use options::{Opening, RerunOptions};
 pub use rrd::LiveWriter;
+pub use streaming::{EncodedRrd, PART_SAMPLES, StreamingRrd};
 
 use std::path::Path;
 
@@ -47,8 +47,8 @@ pub fn write_rrd(
     scene: &Scene,
     options: &RerunOptions,
 ) -> Result<(), RecordingError> {
-    let growing = GrowingRrd::begin(path, "", recording, scene, options)?;
-    growing
+    let streaming = StreamingRrd::begin(path, "", recording, scene, options)?;
+    streaming
         .end(recording, scene, &options.summary_markdown)?
         .write(path)
 }

@@ -377,13 +377,14 @@ fn encoded_while_it_is_made_it_holds_the_same() {
     let grown = |name: &str, origin: &str| {
         let path = directory.path().join(name);
         let (samples, frames) = part(0..700, 0..35);
-        let mut growing = GrowingRrd::begin(&path, origin, &samples, &frames, &options()).unwrap();
+        let mut streaming =
+            StreamingRrd::begin(&path, origin, &samples, &frames, &options()).unwrap();
         for (samples, frames) in [(700..1500, 35..75), (1500..SAMPLES, 75..FRAMES)] {
             let (samples, frames) = part(samples, frames);
-            growing.add(&samples, &frames).unwrap();
+            streaming.add(&samples, &frames).unwrap();
         }
         let summary = options().summary_markdown;
-        let encoded = growing.end(&recording(), &scene(), &summary).unwrap();
+        let encoded = streaming.end(&recording(), &scene(), &summary).unwrap();
         encoded.write(&path).unwrap();
         path
     };

@@ -99,18 +99,18 @@ fn document(cell: &Cell, random: &mut ChaCha8Rng) -> (Value, Vec<Vec<bool>>) {
         let model = Setup::load(placed(&cell.setup.scenario, random))
             .unwrap()
             .collision;
-        let standing = model.bodies().filter(|body| !of_robot(body));
-        let standing: Vec<Value> = standing.map(described).collect();
+        let fixed = model.bodies().filter(|body| !of_robot(body));
+        let fixed: Vec<Value> = fixed.map(described).collect();
         let ours = ["part", "box", "bracket"];
-        let with_standing = |pair: &[String; 2]| {
+        let with_fixed = |pair: &[String; 2]| {
             ours.contains(&pair[1].as_str()) && pair[0] != cell.setup.arm.link_names[0]
         };
-        let pairs: Vec<[String; 2]> = model.checked().filter(with_standing).collect();
+        let pairs: Vec<[String; 2]> = model.checked().filter(with_fixed).collect();
         let met: Vec<[String; 2]> = (model.meetings(cell.plan.motion()).into_iter())
             .map(|meeting| meeting.names)
             .collect();
         verdicts.push(pairs.iter().map(|pair| met.contains(pair)).collect());
-        placements.push(json!({ "bodies": standing, "pairs": pairs }));
+        placements.push(json!({ "bodies": fixed, "pairs": pairs }));
     }
     (
         json!({ "robot": robot, "motion": motion, "placements": placements }),

@@ -12,12 +12,12 @@ pub use evaluate::ScenarioEvaluator;
 
 use super::error::AppError;
 use super::files::{
-    DESIGN, FRONT, OVERRIDE, OutputFolder, REPORT, ROBUSTNESS, Standing, provenance,
+    DESIGN, FRONT, OVERRIDE, OutputFolder, OverwritePolicy, REPORT, ROBUSTNESS, provenance,
 };
 use super::report::of_design;
 use crate::design::{self, Domain, Study, StudyResult, Variable};
 use crate::recording::provenance::Provenance;
-use crate::scenario::{self, AnyScenario, JudgedValue, files_of_cell};
+use crate::scenario::{self, AnyScenario, AssumedValue, files_of_cell};
 
 /// All that a study may write.
 const NAMES: [&str; 5] = [DESIGN, OVERRIDE, FRONT, ROBUSTNESS, REPORT];
@@ -30,7 +30,7 @@ pub(super) struct PreparedStudy {
     /// Its files as they were when they were read: a search takes minutes.
     provenance: Provenance,
     /// Values in use that nobody has measured in public, of all scenarios.
-    judged: Vec<JudgedValue>,
+    assumed: Vec<AssumedValue>,
 }
 
 /// A study that was done.
@@ -49,7 +49,7 @@ impl PreparedStudy {
         file: &Path,
         evaluations: Option<u32>,
         folder: &Path,
-        standing: Standing,
+        policy: OverwritePolicy,
     ) -> Result<Self, AppError> {
         let mut study = design::load(file)?;
         if let Some(evaluations) = evaluations {
@@ -60,8 +60,8 @@ impl PreparedStudy {
         let scenarios = scenarios(&study)?;
         Ok(Self {
             provenance: sources(&study, &scenarios)?,
-            judged: judged(&study, &scenarios),
-            folder: OutputFolder::prepare(folder, &NAMES, standing)?,
+            assumed: assumed(&study, &scenarios),
+            folder: OutputFolder::prepare(folder, &NAMES, policy)?,
             study,
             evaluator,
         })
@@ -114,16 +114,16 @@ fn scenarios(study: &Study) -> Result<Vec<AnyScenario>, AppError> {
 }
 
 /// Values of the scenarios that nobody has measured in public, each once, but for those that the study varies.
-fn judged(study: &Study, scenarios: &[AnyScenario]) -> Vec<JudgedValue> {
+fn assumed(study: &Study, scenarios: &[AnyScenario]) -> Vec<AssumedValue> {
     let varied = |key: &str| {
         let own = key.strip_prefix("device.").unwrap_or(key);
         (study.variables.iter()).any(|variable| [key, own].contains(&variable.key.as_str()))
     };
-    let mut found: Vec<JudgedValue> = Vec::new();
+    let mut found: Vec<AssumedValue> = Vec::new();
     for scenario in scenarios {
-        let own: Vec<&JudgedValue> = match scenario {
-            AnyScenario::Cell(cell) => cell.judged_values().collect(),
-            AnyScenario::Bench(bench) => bench.device.judged.iter().collect(),
+        let own: Vec<&AssumedValue> = match scenario {
+            AnyScenario::Cell(cell) => cell.assumed_values().collect(),
+            AnyScenario::Bench(bench) => bench.device.assumed.iter().collect(),
         };
         for value in own {
             if !varied(&value.key) && !found.iter().any(|known| known.key == value.key) {
@@ -189,7 +189,8 @@ fn document(prepared: &PreparedStudy, result: &StudyResult) -> Result<String, Ap
         #[serde(flatten)]
         result: &'a StudyResult,
         #[serde(skip_serializing_if = "<[_]>::is_empty")]
-        judged: &'a [JudgedValue],
+        #[serde(rename = "judged")]
+        assumed: &'a [AssumedValue],
         provenance: &'a Provenance,
     }
     let study = &prepared.study;
@@ -202,7 +203,7 @@ fn document(prepared: &PreparedStudy, result: &StudyResult) -> Result<String, Ap
             .collect(),
         variables: study.variables.iter().map(varied).collect(),
         result,
-        judged: &prepared.judged,
+        assumed: &prepared.assumed,
         provenance: &prepared.provenance,
     })?)
 }

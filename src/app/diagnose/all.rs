@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use super::super::error::{AppError, ExitCode};
-use super::super::files::Standing;
+use super::super::files::OverwritePolicy;
 use super::super::interrupt::Interruptible;
 use super::super::output::say;
 use super::super::progress;
@@ -35,7 +35,7 @@ pub(super) fn run(
     folder: &Path,
     (cell, limit): (Option<&LoadedCell>, EffortLimit),
     out: &Path,
-    standing: Standing,
+    policy: OverwritePolicy,
     jobs: usize,
     silent: bool,
 ) -> Result<Vec<Outcome>, AppError> {
@@ -51,7 +51,7 @@ pub(super) fn run(
         let next = || locked(&waiting).pop_front();
         while let Some((index, name)) = next() {
             let case = folder.join(&name);
-            let result = caught(|| one(&case, (cell, limit), &out.join(&name), standing));
+            let result = caught(|| one(&case, (cell, limit), &out.join(&name), policy));
             if result.is_ok() {
                 interruptible.one_more();
             }
@@ -111,14 +111,14 @@ fn one(
     case: &Path,
     (cell, limit): (Option<&LoadedCell>, EffortLimit),
     out: &Path,
-    standing: Standing,
+    policy: OverwritePolicy,
 ) -> Result<Done, AppError> {
-    if standing == Standing::Keep
+    if policy == OverwritePolicy::Keep
         && let Some(answer) = complete(out)
     {
         return Ok(Done { answer, kept: true });
     }
-    let finished = Prepared::new(case, (cell, None, limit), out, standing)?.run(&mut |_| ())?;
+    let finished = Prepared::new(case, (cell, None, limit), out, policy)?.run(&mut |_| ())?;
     Ok(Done {
         answer: finished.answer,
         kept: false,

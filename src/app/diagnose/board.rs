@@ -2,7 +2,7 @@
 
 mod text;
 
-use super::super::report::{lacking as lacking_of, most_of, variable};
+use super::super::report::{lacking as lacking_of, robust_range, variable};
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::answer::words::{CHANNEL_UNITS, CHANNEL_WORDS, capital, spoken, yardstick};
 use crate::diagnosis::difference::comparison::{Balance, Compared, ComparedChannel, Comparison};
@@ -229,7 +229,7 @@ fn of_balance(balance: &Balance) -> Cloud {
     let mut sorted: Vec<f64> = kept.iter().map(|i| balance.values[*i]).collect();
     sorted.sort_by(f64::total_cmp);
     // The few points of an impact would press all others flat.
-    let drawn = most_of(&balance.before).unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+    let drawn = robust_range(&balance.before).unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
     let is_drawn = |lacking: f64| (drawn[0]..=drawn[1]).contains(&lacking);
     let outermost = (OUTERMOST * sorted.len() as f64) as usize;
     let low = sorted.get(outermost).copied().unwrap_or_default();

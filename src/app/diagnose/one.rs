@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use super::super::error::AppError;
-use super::super::files::{DIAGNOSIS, OutputFolder, Standing, is_same};
+use super::super::files::{DIAGNOSIS, OutputFolder, OverwritePolicy, is_same};
 use super::cell_scene::{Drawn, cell_scene};
 use super::fit_picture;
 use super::flange_picture;
-use super::outputs::{Finished, NAMES, Outputs, stands_complete};
+use super::outputs::{Finished, NAMES, Outputs, is_complete};
 use super::removal_picture;
 use super::unlisted_picture::picture;
 use crate::case::{Case, Diagnosed, IMPROVED, RIG, RemovalCase, RemovalDiagnosed, diagnose};
@@ -48,7 +48,7 @@ pub(super) fn is_case(folder: &Path) -> bool {
 pub(super) fn complete(folder: &Path) -> Option<Answer> {
     let text = std::fs::read_to_string(folder.join(DIAGNOSIS)).ok()?;
     let answer: Answer = serde_json::from_str(&text).ok()?;
-    (answer.details.schema == DETAILS_SCHEMA && stands_complete(folder)).then_some(answer)
+    (answer.details.schema == DETAILS_SCHEMA && is_complete(folder)).then_some(answer)
 }
 
 impl Prepared {
@@ -57,7 +57,7 @@ impl Prepared {
         folder: &Path,
         (cell, tried, limit): (Option<&LoadedCell>, Option<LawText>, EffortLimit),
         out: &Path,
-        standing: Standing,
+        policy: OverwritePolicy,
     ) -> Result<Self, AppError> {
         let subject = if cell.is_none() && is_removal_table(&folder.join(RIG)) {
             if tried.is_some() {
@@ -76,7 +76,7 @@ impl Prepared {
             }
             Subject::Recordings(Box::new(case))
         };
-        if standing == Standing::Refuse && out.join(DIAGNOSIS).exists() {
+        if policy == OverwritePolicy::Refuse && out.join(DIAGNOSIS).exists() {
             return Err(AppError::Diagnosed {
                 folder: out.display().to_string(),
             });
@@ -92,7 +92,7 @@ impl Prepared {
                 limit,
                 ..Settings::default()
             },
-            folder: OutputFolder::prepare(out, &NAMES, standing)?,
+            folder: OutputFolder::prepare(out, &NAMES, policy)?,
         })
     }
 

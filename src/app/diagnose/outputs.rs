@@ -35,7 +35,7 @@ pub(super) const NAMES: [&str; 10] = [
 ];
 
 /// Whether a folder holds the files of every diagnosis.
-pub(super) fn stands_complete(folder: &Path) -> bool {
+pub(super) fn is_complete(folder: &Path) -> bool {
     let all = [ACCOUNT, IMPROVED, COMPARISON, BALANCE, BOARD, DIAGNOSIS];
     all.iter().all(|name| folder.join(name).is_file())
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 use super::super::error::AppError;
-use super::super::files::{Standing, prepare_file};
+use super::super::files::{OverwritePolicy, prepare_file};
 use super::page::{Explained, by_subsystem};
 use super::picture::picture;
 use crate::demonstration::{self as scene, Stage};
@@ -39,7 +39,7 @@ This page and its pictures are made by `idc effects --gallery docs --force`, of 
 ";
 
 /// Writes it all; says what was written.
-pub(super) fn write(folder: &Path, standing: Standing) -> Result<String, AppError> {
+pub(super) fn write(folder: &Path, policy: OverwritePolicy) -> Result<String, AppError> {
     let mut stages: BTreeMap<String, Stage> = BTreeMap::new();
     let mut text = INTRODUCTION.to_owned();
     let groups: Vec<(&str, Vec<&Effect>)> = by_subsystem().collect();
@@ -80,7 +80,7 @@ pub(super) fn write(folder: &Path, standing: Standing) -> Result<String, AppErro
     text += END;
     pictures.push((folder.join(TEXT), text));
     for (path, _) in &pictures {
-        prepare_file(path, "--gallery", standing)?;
+        prepare_file(path, "--gallery", policy)?;
     }
     for (path, content) in &pictures {
         write_text(path, content)?;

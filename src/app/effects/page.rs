@@ -136,7 +136,7 @@ impl Explained {
             })
             .collect();
         let mut lines = vec!["[[effect]]".to_owned(), format!("name = \"{name}\"")];
-        lines.extend(of_joint.then(|| format!("joint = {}", stage.telling)));
+        lines.extend(of_joint.then(|| format!("joint = {}", stage.most_observable_joint)));
         lines.extend(numbers.iter().map(|n| format!("{} = {}", n.key, n.shown)));
         let (chain, command) = match scene::of(effect).scene {
             Scene::Part(parts) => (Some(parts.name()), None),

@@ -77,7 +77,7 @@ pub(super) fn picture(effect: &Effect, stage: &Stage) -> Result<Picture, AppErro
             ..Panel::default()
         });
     }
-    let title = title(effect, &stage.nominal, stage.telling);
+    let title = title(effect, &stage.nominal, stage.most_observable_joint);
     let svg = svg(&Figure { title, panels })?;
     Ok(Picture { svg, difference })
 }

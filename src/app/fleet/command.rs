@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::super::engine::{EngineArguments, PLAN, Tasks};
 use super::super::error::{AppError, ExitCode};
-use super::super::files::{OutputFolder, REPORT, Standing, is_same, output_folder};
+use super::super::files::{OutputFolder, OverwritePolicy, REPORT, is_same, output_folder};
 use super::super::output::say;
 use super::page::page_of;
 use super::planned::{check, recordings, write, write_fits};
@@ -77,7 +77,11 @@ pub(in super::super) fn run(arguments: &FleetArguments) -> Result<ExitCode, AppE
         });
     }
     let worker = Worker::of(&arguments.scenario, &out)?;
-    let folder = OutputFolder::prepare(&out, &[PLAN, FITS, TABLE, FLEET, REPORT], Standing::Keep)?;
+    let folder = OutputFolder::prepare(
+        &out,
+        &[PLAN, FITS, TABLE, FLEET, REPORT],
+        OverwritePolicy::Keep,
+    )?;
     let (plan, fits) = (out.join(PLAN), out.join(FITS));
     let store = Store::of(&plan);
     if arguments.force {
@@ -87,7 +91,7 @@ pub(in super::super) fn run(arguments: &FleetArguments) -> Result<ExitCode, AppE
     let quiet = arguments.quiet || arguments.json;
     let new = Plan::open(&plan)?
         .filter_map(Result::ok)
-        .filter(|task| !store.stands(&task.id));
+        .filter(|task| !store.exists(&task.id));
     let new = new.count();
     let count: usize = layout
         .devices

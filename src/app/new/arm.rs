@@ -422,7 +422,7 @@ fn stances(setup: &Setup, reach: f64) -> Vec<Stance> {
     // A joint of the shoulder may lie off the first axis.
     let shoulder = first.translation + axis * axis.dot(shoulder - first.translation);
     let up = -setup.scenario.simulation.gravity.normalize_or(-DVec3::Z);
-    let stands = axis.dot(up).abs() > 0.9 && shoulder.dot(up) > first.translation.dot(up) - 0.05;
+    let upright = axis.dot(up).abs() > 0.9 && shoulder.dot(up) > first.translation.dot(up) - 0.05;
     let ahead = arm.world_from_base.rotation * DVec3::X;
     let azimuth = match ahead.x.hypot(ahead.y) > 0.1 {
         true => ahead.y.atan2(ahead.x),
@@ -450,7 +450,7 @@ fn stances(setup: &Setup, reach: f64) -> Vec<Stance> {
                     let origin = target - rotation * middle;
                     // To a millimetre, as it is written.
                     let origin = (origin * 1e3).round() * 1e-3;
-                    if stands && origin.z + low.z < 0.02 {
+                    if upright && origin.z + low.z < 0.02 {
                         continue;
                     }
                     found.push(Stance {

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::super::error::AppError;
 use super::super::progress;
-use crate::advice::{Effort, Manner, RunOutcome, Trial, anywhere, pose_edits};
+use crate::advice::{Effort, RunOptions, RunOutcome, Trial, anywhere, pose_edits};
 use crate::cell::{Cell, Setup, largest_balls};
 use crate::metrics;
 use crate::run::run_cell;
@@ -139,7 +139,7 @@ pub(super) fn with_an_edge(
     let template = ScenarioTemplate::read(&draft)?;
     let line = progress::spinner("looking for an edge that can be ridden", quiet);
     let runs = |cell: &Cell| outcome(cell);
-    let manner = Manner {
+    let options = RunOptions {
         runs: &runs,
         tell: &|_| (),
         keep_on: &|| true,
@@ -148,7 +148,7 @@ pub(super) fn with_an_edge(
     let mut found = None;
     for force in FORCES {
         let given = force.map_or_else(Vec::new, with_force);
-        let trial = Trial::new(&template, &given, Effort::times(EXTENT), &manner);
+        let trial = Trial::new(&template, &given, Effort::times(EXTENT), &options);
         match search(&trial) {
             Ok((ridden, edits)) => {
                 found = Some((ridden, [given, edits].concat()));

@@ -129,7 +129,7 @@ pub(in crate::app) fn variable(name: &str) -> (&str, &'static str, f64) {
 }
 
 /// Where nearly all values lie, with some room; none where there are none. At an impact a few are ten times as large.
-pub(in crate::app) fn most_of(values: &[f64]) -> Option<[f64; 2]> {
+pub(in crate::app) fn robust_range(values: &[f64]) -> Option<[f64; 2]> {
     const BEYOND: f64 = 0.01;
     const ROOM: f64 = 0.35;
     let finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
@@ -169,7 +169,7 @@ pub(super) fn balance<'a>(balance: &Balance) -> Panel<'a> {
             cloud(&balance.before, "as believed", Role::Command),
             cloud(&balance.after, "improved", Role::Estimate),
         ],
-        within: most_of(&balance.before).map(|ends| ends.map(|end| factor * end)),
+        within: robust_range(&balance.before).map(|ends| ends.map(|end| factor * end)),
         ..Panel::default()
     }
 }

@@ -11,12 +11,12 @@ use crate::metrics::{BoundCheck, Summary, Timing};
 use crate::recording::provenance::Provenance;
 use crate::recording::{Recording, RecordingError};
 use crate::run::{FinishedCell, run_cell};
-use crate::scenario::{ChamferScenario, JudgedValue};
+use crate::scenario::{AssumedValue, ChamferScenario};
 use crate::scene::Scene;
 use crate::simulation::{FrameLog, SampleLog};
 
 /// Simulates the whole job, and gives what is recorded to listeners while it goes on.
-pub(super) fn run_heard(
+pub(super) fn run_observed(
     cell: &Cell,
     progress: &mut dyn FnMut(usize, usize),
     mut listeners: Vec<Listener<'_>>,
@@ -79,7 +79,7 @@ impl RunPart {
 pub(in super::super) struct Listener<'a> {
     /// Steps a part.
     part: usize,
-    hear: Box<dyn FnMut(RunPart) -> Result<(), AppError> + 'a>,
+    observe: Box<dyn FnMut(RunPart) -> Result<(), AppError> + 'a>,
     /// Samples and frames that were handed over already.
     samples: usize,
     frames: usize,
@@ -89,11 +89,11 @@ impl<'a> Listener<'a> {
     /// One that is given parts of so many steps.
     pub(in super::super) fn new(
         part: usize,
-        hear: impl FnMut(RunPart) -> Result<(), AppError> + 'a,
+        observe: impl FnMut(RunPart) -> Result<(), AppError> + 'a,
     ) -> Self {
         Self {
             part: part.max(1),
-            hear: Box::new(hear),
+            observe: Box::new(observe),
             samples: 0,
             frames: 0,
         }
@@ -120,7 +120,7 @@ impl<'a> Listener<'a> {
         };
         self.samples = samples.count();
         self.frames = frames.times.len();
-        (self.hear)(part)
+        (self.observe)(part)
     }
 }
 
@@ -148,7 +148,8 @@ pub(super) struct SummaryDocument<'a> {
     estimated_masses: Option<&'a EstimatedArm>,
     /// Values in use that nobody has measured in public.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    judged: Vec<&'a JudgedValue>,
+    #[serde(rename = "judged")]
+    assumed: Vec<&'a AssumedValue>,
     provenance: &'a Provenance,
 }
 
@@ -181,7 +182,7 @@ impl<'a> SummaryDocument<'a> {
             samples: finished.recording.sample_count(),
             notes: &cell.setup.notes,
             estimated_masses: cell.estimated.as_ref(),
-            judged: cell.setup.scenario.judged_values().collect(),
+            assumed: cell.setup.scenario.assumed_values().collect(),
             provenance: origin,
         }
     }

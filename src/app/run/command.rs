@@ -6,12 +6,12 @@ use clap::Args;
 
 use super::super::advice::AdviceArguments;
 use super::super::error::{AppError, ExitCode};
-use super::super::files::{OutputFolder, RUN_NAMES, Standing, output_folder};
+use super::super::files::{OutputFolder, OverwritePolicy, RUN_NAMES, output_folder};
 use super::super::interrupt::Interruptible;
 use super::super::output::show;
 use super::super::progress;
 use super::super::viewer::{Viewing, Watch};
-use super::job::Manner;
+use super::job::RunOptions;
 use super::settings::{Setting, Variant, with_flags};
 use super::source::Source;
 use crate::report::Style;
@@ -63,8 +63,8 @@ impl RunArguments {
         output_folder(self.out.as_ref(), &self.scenario)
     }
 
-    pub(super) fn manner(&self) -> Manner {
-        Manner {
+    pub(super) fn run_options(&self) -> RunOptions {
+        RunOptions {
             recorded: !self.no_recording,
             opening: self.hold_at_s.map_or(Opening::Following, Opening::At),
             style: match anstream::AutoStream::choice(&std::io::stdout()) {
@@ -74,10 +74,10 @@ impl RunArguments {
         }
     }
 
-    pub(super) fn standing(&self) -> Standing {
+    pub(super) fn policy(&self) -> OverwritePolicy {
         match self.resume {
-            true => Standing::Keep,
-            false => Standing::of(self.force),
+            true => OverwritePolicy::Keep,
+            false => OverwritePolicy::of(self.force),
         }
     }
 }
@@ -116,7 +116,7 @@ pub(super) fn one(
             }
         })?;
     let path = arguments.folder();
-    let folder = OutputFolder::prepare(&path, &RUN_NAMES, Standing::of(arguments.force))?;
+    let folder = OutputFolder::prepare(&path, &RUN_NAMES, OverwritePolicy::of(arguments.force))?;
     let source = match varied {
         Some((template, variant)) => Source::varied(template, &variant.edits, None, folder.path())?,
         None => Source::file(&arguments.scenario),
@@ -134,24 +134,30 @@ pub(super) fn one(
     let interruptible = Interruptible::of_one("run", &path);
     let bar = progress::bar("simulating", quiet);
     let told = &mut |done, total| progress::tell(&bar, done, total);
-    let ended = job.perform(&source, &folder, arguments.manner(), watch.as_ref(), told);
+    let outcome = job.perform(
+        &source,
+        &folder,
+        arguments.run_options(),
+        watch.as_ref(),
+        told,
+    );
     bar.finish_and_clear();
-    let ended = ended?;
+    let outcome = outcome?;
     // From here on all is in its place.
     drop(interruptible);
     show(
         [arguments.quiet, arguments.json],
-        &ended.document,
-        &ended.table,
+        &outcome.document,
+        &outcome.table,
         &folder,
-        &ended.names,
+        &outcome.names,
     )?;
-    for line in &ended.told {
+    for line in &outcome.told {
         eprintln!("{line}");
     }
     if let Some(watch) = watch {
-        let (scene, summary) = ended.shown;
+        let (scene, summary) = outcome.shown;
         watch.close(scene, summary, quiet);
     }
-    Ok(ended.code)
+    Ok(outcome.code)
 }

@@ -8,12 +8,12 @@ use super::super::files::{
     DRAWING, EDGE, EDGE_PROFILE, FIGURES, LEAN, OutputFolder, Picture, RECORDING, RunOutput,
     Sketches,
 };
-use super::super::growing::GrowingFile;
 use super::super::picture::{across_the_edge, finished_edge, scene_of};
 use super::super::report::page_of_run;
+use super::super::streaming::StreamingRecording;
 use super::super::viewer::Watch;
 use super::super::{bench, bench_figures, bench_picture};
-use super::cell_run::{Listener, SummaryDocument, run_heard};
+use super::cell_run::{Listener, SummaryDocument, run_observed};
 use super::source::Source;
 use crate::cell::Cell;
 use crate::metrics::{BoundCheck, Summary};
@@ -29,7 +29,7 @@ use crate::viewer::{Opening, RerunOptions, write_rrd};
 
 /// Settings of a run.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Manner {
+pub(super) struct RunOptions {
     /// Whether recording.rrd is written.
     pub recorded: bool,
     /// First view of recording.rrd.
@@ -39,7 +39,7 @@ pub(super) struct Manner {
 }
 
 /// A run that has ended, its files written.
-pub(super) struct Ended {
+pub(super) struct RunOutcome {
     /// Content of summary.json.
     pub document: String,
     /// Its numbers for people.
@@ -100,13 +100,17 @@ impl Job {
         &self,
         source: &Source,
         folder: &OutputFolder,
-        manner: Manner,
+        run_options: RunOptions,
         watch: Option<&Watch>,
         told: &mut dyn FnMut(usize, usize),
-    ) -> Result<Ended, AppError> {
+    ) -> Result<RunOutcome, AppError> {
         match self {
-            Self::Cell(cell) => perform_cell(self, cell, source, folder, (manner, watch), told),
-            Self::Bench(rig) => perform_bench(self, rig, source, folder, (manner, watch), told),
+            Self::Cell(cell) => {
+                perform_cell(self, cell, source, folder, (run_options, watch), told)
+            }
+            Self::Bench(rig) => {
+                perform_bench(self, rig, source, folder, (run_options, watch), told)
+            }
         }
     }
 }
@@ -116,22 +120,22 @@ fn perform_cell(
     cell: &Cell,
     source: &Source,
     folder: &OutputFolder,
-    (manner, watch): (Manner, Option<&Watch>),
+    (run_options, watch): (RunOptions, Option<&Watch>),
     told: &mut dyn FnMut(usize, usize),
-) -> Result<Ended, AppError> {
+) -> Result<RunOutcome, AppError> {
     let (origin, content) = job.provenance(source)?;
     let target = folder.path().join(RECORDING);
     let options = RerunOptions {
-        opening: manner.opening,
+        opening: run_options.opening,
         ..RerunOptions::default()
     };
     std::thread::scope(|scope| {
-        let growing =
-            (manner.recorded).then(|| GrowingFile::begin(scope, cell, &target, &content, options));
+        let streaming = (run_options.recorded)
+            .then(|| StreamingRecording::begin(scope, cell, &target, &content, options));
         let watching = watch.map(|watch| Listener::watching(cell, watch));
-        let growing_too = growing.iter().map(GrowingFile::listener);
-        let listeners = watching.into_iter().chain(growing_too).collect();
-        let finished = run_heard(cell, told, listeners)?;
+        let of_stream = streaming.iter().map(StreamingRecording::listener);
+        let listeners = watching.into_iter().chain(of_stream).collect();
+        let finished = run_observed(cell, told, listeners)?;
         let verdicts = finished.bounds(cell)?;
         let title = &cell.setup.scenario.title;
         let document = SummaryDocument::new(cell, &finished, &verdicts, source, &origin).text()?;
@@ -159,7 +163,7 @@ fn perform_cell(
                 );
                 page.map(|page| (page, sketches))
             },
-            || growing.map(|growing| growing.end(&finished.recording, &scene, &summary)),
+            || streaming.map(|streaming| streaming.end(&finished.recording, &scene, &summary)),
         );
         let ((report, sketches), encoded) = (report?, encoded.transpose()?);
         let names = folder.write(RunOutput {
@@ -174,10 +178,10 @@ fn perform_cell(
             sketches: &sketches,
             report: &report,
         })?;
-        let (code, mut told) = judged(finished.stop.as_ref(), &verdicts);
+        let (code, mut told) = exit_code(finished.stop.as_ref(), &verdicts);
         told.extend(drives_at_their_limit(&finished.summary));
-        Ok(Ended {
-            table: text(title, &finished.summary, &verdicts, manner.style),
+        Ok(RunOutcome {
+            table: text(title, &finished.summary, &verdicts, run_options.style),
             document,
             names,
             told,
@@ -192,9 +196,9 @@ fn perform_bench(
     rig: &Rig,
     source: &Source,
     folder: &OutputFolder,
-    (manner, watch): (Manner, Option<&Watch>),
+    (run_options, watch): (RunOptions, Option<&Watch>),
     told: &mut dyn FnMut(usize, usize),
-) -> Result<Ended, AppError> {
+) -> Result<RunOutcome, AppError> {
     let (origin, _) = job.provenance(source)?;
     let finished = bench::run_watched(rig, told, watch)?;
     let scenario = &rig.scenario;
@@ -205,14 +209,14 @@ fn perform_bench(
     let report = page_of_run(&document, &finished.recording, None, &sketches)?;
     let options = RerunOptions {
         summary_markdown: bench_markdown(&scenario.title, &finished.summary, &verdicts),
-        opening: manner.opening,
+        opening: run_options.opening,
         ..RerunOptions::default()
     };
     let picture = |path: &Path| write_rrd(path, &finished.recording, &scene, &options);
     let names = folder.write(RunOutput {
         title: &scenario.title,
         recording: &finished.recording,
-        picture: manner.recorded.then_some(Box::new(picture)),
+        picture: run_options.recorded.then_some(Box::new(picture)),
         summary: &document,
         edge_profile: None,
         figures: Some(&bench_figures::figures(scenario, &finished.recording)?),
@@ -220,9 +224,14 @@ fn perform_bench(
         sketches: &sketches,
         report: &report,
     })?;
-    let (code, told) = judged(finished.stop.as_ref(), &verdicts);
-    Ok(Ended {
-        table: bench_text(&scenario.title, &finished.summary, &verdicts, manner.style),
+    let (code, told) = exit_code(finished.stop.as_ref(), &verdicts);
+    Ok(RunOutcome {
+        table: bench_text(
+            &scenario.title,
+            &finished.summary,
+            &verdicts,
+            run_options.style,
+        ),
         document,
         names,
         told,
@@ -232,7 +241,7 @@ fn perform_bench(
 }
 
 /// Why a run stopped early, if it did, or else which results lie outside their bounds.
-pub(super) fn judged(
+pub(super) fn exit_code(
     stop: Option<&impl std::fmt::Display>,
     verdicts: &[BoundCheck],
 ) -> (ExitCode, Vec<String>) {

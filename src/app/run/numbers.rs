@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::super::error::{AppError, ExitCode};
-use super::job::judged;
+use super::job::exit_code;
 use crate::run::{Job, RunError};
 use crate::scenario::AnyScenario;
 
@@ -32,7 +32,7 @@ pub(in super::super) fn numbers(scenario: AnyScenario) -> Numbers {
     };
     let run = Job::new(scenario).and_then(|job| job.run(&mut |_, _| ()));
     run.map_or_else(refused, |outcome| {
-        let (code, reasons) = judged(outcome.stop.as_ref(), &outcome.bounds);
+        let (code, reasons) = exit_code(outcome.stop.as_ref(), &outcome.bounds);
         Numbers {
             code: code as u8,
             reason: reasons.join("; "),

@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use super::super::compare::write_page;
 use super::super::error::{AppError, ExitCode};
-use super::super::files::{OutputFolder, RUN_NAMES, SUMMARY, Standing, prepare_file};
+use super::super::files::{OutputFolder, OverwritePolicy, RUN_NAMES, SUMMARY, prepare_file};
 use super::super::interrupt::Interruptible;
 use super::super::output::say;
 use super::super::progress;
@@ -33,7 +33,7 @@ pub(super) fn run(
 ) -> Result<ExitCode, AppError> {
     let out = arguments.folder();
     let page = out.join(PAGE);
-    let standing = arguments.standing();
+    let policy = arguments.policy();
     let jobs = rayon::current_num_threads();
     let checked = in_order(variants.len(), jobs, |index| {
         job(template, &variants[index]).map(drop)
@@ -44,18 +44,18 @@ pub(super) fn run(
         .flatten()
         .collect::<Result<Vec<()>, _>>()?;
     for variant in variants {
-        OutputFolder::check(&out.join(&variant.name), &RUN_NAMES, standing)?;
+        OutputFolder::check(&out.join(&variant.name), &RUN_NAMES, policy)?;
     }
-    prepare_file(&page, "--out", standing)?;
+    prepare_file(&page, "--out", policy)?;
     let folders = (variants.iter())
-        .map(|variant| OutputFolder::prepare(&out.join(&variant.name), &RUN_NAMES, standing))
+        .map(|variant| OutputFolder::prepare(&out.join(&variant.name), &RUN_NAMES, policy))
         .collect::<Result<Vec<_>, _>>()?;
     let quiet = arguments.quiet || arguments.json;
     let bar = progress::runs(variants.len(), PARTS, quiet);
     let count = variants.len();
     let interruptible = Interruptible::of_many(count, "runs are done", &out);
     let failed = AtomicUsize::new(0);
-    let ended = in_order(count, jobs, |index| {
+    let outcomes = in_order(count, jobs, |index| {
         // What a full disk does to one it does to all.
         if failed.load(Ordering::Relaxed) > 0 {
             return Ok(None);
@@ -77,11 +77,11 @@ pub(super) fn run(
     });
     bar.finish_and_clear();
     let mut runs = Vec::new();
-    for (index, ended) in ended.into_iter().enumerate() {
+    for (index, outcome) in outcomes.into_iter().enumerate() {
         let fault = || AppError::Fault {
             part: variants[index].name.clone(),
         };
-        runs.extend(ended.ok_or_else(fault)??);
+        runs.extend(outcome.ok_or_else(fault)??);
     }
     let paths: Vec<PathBuf> = runs.iter().map(|run| run.folder.clone()).collect();
     write_page(&paths, &page)?;
@@ -106,15 +106,15 @@ fn one(
     let source = Source::varied(template, &variant.edits, title.clone(), folder.path())?;
     let titled: Vec<_> = variant.edits.iter().cloned().chain(title).collect();
     let job = Job::new(template.with(&titled)?)?;
-    let standing = match arguments.standing() {
-        Standing::Keep => standing(folder.path(), &job, &source, !arguments.no_recording)?,
+    let existing = match arguments.policy() {
+        OverwritePolicy::Keep => existing(folder.path(), &job, &source, !arguments.no_recording)?,
         _ => None,
     };
-    let document = match standing {
+    let document = match existing {
         Some(document) => document,
         None => {
-            let ended = job.perform(&source, folder, arguments.manner(), None, told)?;
-            serde_json::from_str(&ended.document)?
+            let outcome = job.perform(&source, folder, arguments.run_options(), None, told)?;
+            serde_json::from_str(&outcome.document)?
         }
     };
     Ok(Done {
@@ -125,7 +125,7 @@ fn one(
 }
 
 /// The numbers of a run that stands complete in its folder and comes from the same files and values.
-fn standing(
+fn existing(
     folder: &Path,
     job: &Job,
     source: &Source,

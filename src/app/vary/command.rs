@@ -6,13 +6,13 @@ use clap::Args;
 
 use super::super::engine::{EngineArguments, PLAN, Tasks};
 use super::super::error::{AppError, ExitCode};
-use super::super::files::{OutputFolder, REPORT, Standing, output_folder};
+use super::super::files::{OutputFolder, OverwritePolicy, REPORT, output_folder};
 use super::super::output::say;
 use super::page::page_of;
 use super::table::{RUNS, SWEEP, columns, write_table};
 use super::work::Worker;
 use crate::quantity::counted;
-use crate::run::put_in;
+use crate::run::apply_effects;
 use crate::scenario::{EffectRequest, ScenarioTemplate};
 use crate::tasks::{Head, Plan, Store};
 use crate::vary::{Points, Sampling, Sweep, Swept, Variable, VaryError};
@@ -100,7 +100,7 @@ fn sampling(text: &str) -> Result<Sampling, String> {
 /// Plans, runs, and writes what came of it.
 pub(in super::super) fn run(arguments: &VaryArguments) -> Result<ExitCode, AppError> {
     let template = ScenarioTemplate::read(&arguments.scenario)?;
-    let fixed = put_in(&arguments.effects, &template)?;
+    let fixed = apply_effects(&arguments.effects, &template)?;
     let points = match &arguments.points {
         Some(file) => Points::table(file)?,
         None => {
@@ -136,18 +136,18 @@ pub(in super::super) fn run(arguments: &VaryArguments) -> Result<ExitCode, AppEr
 
 /// The folder, with the plan in it.
 fn prepare(arguments: &VaryArguments, sweep: &Sweep, out: &Path) -> Result<PathBuf, AppError> {
-    let standing = match arguments.resume {
-        true => Standing::Keep,
-        false => Standing::of(arguments.force),
+    let policy = match arguments.resume {
+        true => OverwritePolicy::Keep,
+        false => OverwritePolicy::of(arguments.force),
     };
     let names = [PLAN, RUNS, SWEEP, REPORT];
-    let folder = OutputFolder::prepare(out, &names, standing)?;
+    let folder = OutputFolder::prepare(out, &names, policy)?;
     for name in [RUNS, SWEEP, REPORT] {
         // Of a sweep that is being done anew, or has grown.
         folder.discard(name)?;
     }
     let plan = out.join(PLAN);
-    if standing == Standing::Replace {
+    if policy == OverwritePolicy::Replace {
         Store::of(&plan).clear()?;
     }
     sweep.write(&plan)?;
@@ -178,7 +178,7 @@ fn finish(
     let swept = Swept::of(sweep, (&program, &files), &|wanted| columns(&table, wanted))?;
     let document = serde_json::to_string_pretty(&swept)?;
     let page = page_of(&swept, &table)?;
-    let folder = OutputFolder::prepare(out, &[], Standing::Keep)?;
+    let folder = OutputFolder::prepare(out, &[], OverwritePolicy::Keep)?;
     folder.write_texts(&[(REPORT, &page), (SWEEP, &document)])?;
     if arguments.json {
         say(&format!("{document}\n"))?;

@@ -50,8 +50,8 @@ impl NativeViewer {
     /// Shows files until its window is closed.
     pub(in crate::app) fn show(&self, files: &[PathBuf]) -> Result<(), ViewerError> {
         let mut command = self.command();
-        let ended = command.args(files).status();
-        match ended {
+        let status_of_viewer = command.args(files).status();
+        match status_of_viewer {
             Ok(status) if status.success() => Ok(()),
             Ok(status) => Err(self.failed(&format!("it ended with {status}"))),
             Err(error) => Err(self.failed(&error)),

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::design::archive::{Archive, Good, Judged};
+use crate::design::archive::{Archive, EvaluatedDesign, Good};
 use crate::design::error::DesignError;
 use crate::design::front::{non_dominated, thinned};
 use crate::design::goal::Goal;
@@ -83,10 +83,10 @@ fn names(study: &Study) -> ObjectiveNames {
     }
 }
 
-fn infeasible(study: &Study, all: &[Arc<Judged>]) -> BTreeMap<String, usize> {
+fn infeasible(study: &Study, all: &[Arc<EvaluatedDesign>]) -> BTreeMap<String, usize> {
     let mut counts = BTreeMap::new();
-    for judged in all {
-        let reason = match &judged.result {
+    for evaluated in all {
+        let reason = match &evaluated.result {
             Err(error) => error.reason.clone(),
             Ok(scored) if scored.feasible() => continue,
             Ok(scored) => {
@@ -100,7 +100,7 @@ fn infeasible(study: &Study, all: &[Arc<Judged>]) -> BTreeMap<String, usize> {
     counts
 }
 
-fn candidate(study: &Study, (judged, scored): &Good) -> Candidate {
+fn candidate(study: &Study, (evaluated, scored): &Good) -> Candidate {
     let pairs = study.limits.iter().zip(&scored.excess);
     let limits = pairs.map(|(limit, excess)| LimitState {
         limit: limit.sentence(),
@@ -115,7 +115,7 @@ fn candidate(study: &Study, (judged, scored): &Good) -> Candidate {
         active: (-ACTIVE..=0.0).contains(excess),
     });
     Candidate {
-        design: study.design(&judged.values),
+        design: study.design(&evaluated.values),
         objective: scored.objective,
         trade_off: study.trade_off.as_ref().map(|_| scored.trade_off),
         feasible: scored.feasible(),

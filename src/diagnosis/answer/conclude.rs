@@ -153,7 +153,7 @@ impl Diagnosis {
             law: latent.formula().map(|formula| FoundLaw::of(&formula.law)),
             unlisted: self.unlisted_report().map(Box::new),
         });
-        let rest = self.far_above_without_a_name();
+        let rest = self.discrepancy_far_above_noise();
         effects
             .map(|(effect, numbers)| FoundEffect {
                 name: effect.vocabulary().0.to_owned(),
@@ -191,12 +191,12 @@ impl Diagnosis {
     }
 
     /// Whether known effects leave a channel far above its noise: then they do not explain the recordings.
-    pub(in crate::diagnosis) fn leaves_without_a_name(&self) -> bool {
+    pub(in crate::diagnosis) fn leaves_model_discrepancy(&self) -> bool {
         self.far_above_with_names().is_some()
     }
 
     /// What known effects leave far above the noise, as an effect without a name: of them alone nothing is explained.
-    fn far_above_without_a_name(&self) -> Option<FoundEffect> {
+    fn discrepancy_far_above_noise(&self) -> Option<FoundEffect> {
         let channel = self.far_above_with_names()?;
         Some(FoundEffect {
             name: UNLISTED.to_owned(),

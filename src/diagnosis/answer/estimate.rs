@@ -76,13 +76,13 @@ impl Limit {
         let [low, high] = free.bounds.map(at);
         // Of a range without an end in the fit's coordinate, such as a logarithm's down to 0, nothing is near but the end itself.
         let near = Some(AT_LIMIT * (high - low)).filter(|near| near.is_finite());
-        let stands = |end: f64, bound: f64| {
+        let is_at = |end: f64, bound: f64| {
             value == bound || near.is_some_and(|near| (at(value) - end).abs() < near)
         };
-        if stands(low, free.bounds[0]) {
+        if is_at(low, free.bounds[0]) {
             Some(Self::Lower)
         } else {
-            stands(high, free.bounds[1]).then_some(Self::Upper)
+            is_at(high, free.bounds[1]).then_some(Self::Upper)
         }
     }
 }

@@ -55,8 +55,8 @@ pub fn doubts_of(numbers: &[Estimate]) -> Vec<Doubt> {
             Doubt::HoldsNeutral,
         ),
     ];
-    let stands = all.into_iter().filter(|(is, _)| *is);
-    stands.map(|(_, doubt)| doubt).collect()
+    let holding = all.into_iter().filter(|(is, _)| *is);
+    holding.map(|(_, doubt)| doubt).collect()
 }
 
 /// Whether an effect is named in the headline.

@@ -191,10 +191,10 @@ impl Diagnosis {
         };
         let best = &self.best().fit.prediction;
         let before = of(&self.baseline.prediction.residuals);
-        let telling = regimes(&self.evidence, &best.plant, &best.trajectories, &before);
+        let explaining = regimes(&self.evidence, &best.plant, &best.trajectories, &before);
         // A slide that a motor drives has no air, whatever its numbers say.
         let airless = self.believed.parts == DeviceParts::DrivenSlide;
-        let mut known = telling.iter().map(|regime| regime.variable);
+        let mut known = explaining.iter().map(|regime| regime.variable);
         let known = known.find(|name| !airless || !OF_AIR.contains(name));
         let variable = known.unwrap_or(TIME);
         let values = values_of(variable, &self.evidence, &best.plant, &best.trajectories)?;

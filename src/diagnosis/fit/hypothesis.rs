@@ -85,7 +85,7 @@ pub(in crate::diagnosis) fn covers(one: &Hypothesis, other: &Hypothesis) -> bool
 }
 
 /// Whether the effects of two hypotheses are the same but for laws that exclude one another.
-pub(in crate::diagnosis) fn stands_for(one: &Hypothesis, other: &Hypothesis) -> bool {
+pub(in crate::diagnosis) fn is_equivalent(one: &Hypothesis, other: &Hypothesis) -> bool {
     one.effects.len() == other.effects.len() && covers(one, other) && covers(other, one)
 }
 

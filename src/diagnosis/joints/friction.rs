@@ -167,15 +167,15 @@ fn disagreement(recordings: &[Vec<[f64; 2]>], friction: f64) -> f64 {
         let product: f64 = rows.iter().map(|row| row[0] * row[1]).sum();
         (change, product)
     });
-    let telling: Vec<(f64, f64)> = sums.filter(|(change, _)| *change > 0.0).collect();
-    if telling.len() < 2 {
+    let informative: Vec<(f64, f64)> = sums.filter(|(change, _)| *change > 0.0).collect();
+    if informative.len() < 2 {
         return 0.0;
     }
-    let all: f64 = telling.iter().map(|(change, _)| change).sum();
-    let spread: f64 = (telling.iter())
+    let all: f64 = informative.iter().map(|(change, _)| change).sum();
+    let spread: f64 = (informative.iter())
         .map(|(change, product)| change * (product / change - friction).powi(2))
         .sum();
-    (spread / all / (telling.len() - 1) as f64).sqrt()
+    (spread / all / (informative.len() - 1) as f64).sqrt()
 }
 
 impl JointFriction {

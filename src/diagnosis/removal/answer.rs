@@ -329,13 +329,13 @@ fn not_needed(diagnosis: &RemovalDiagnosis, is_feed: bool) -> Vec<String> {
                 if sign < 0.0 {
                     ends.swap(1, 2);
                 }
-                let judged = if vague {
+                let finding = if vague {
                     "cannot be told well"
                 } else {
                     "need not differ from what is believed"
                 };
                 format!(
-                    "The exponent of the {quantity} {judged}: left free it is {}.",
+                    "The exponent of the {quantity} {finding}: left free it is {}.",
                     number(ends)
                 )
             }

@@ -6,7 +6,7 @@ use super::scale::Scale;
 use super::{Search, same};
 use crate::diagnosis::fit::cross_validation::{Depth, left_out};
 use crate::diagnosis::fit::free::{Free, free_of};
-use crate::diagnosis::fit::hypothesis::{Hypothesis, covers, stands_for};
+use crate::diagnosis::fit::hypothesis::{Hypothesis, covers, is_equivalent};
 use crate::effects::Effect;
 use crate::plant::DeviceParts;
 
@@ -46,7 +46,7 @@ impl Search<'_> {
         let plainer = |h: &&Hypothesis| {
             !has_term
                 && h.fit.free.len() < best.fit.free.len()
-                && stands_for(h, best)
+                && is_equivalent(h, best)
                 && !full.iter().any(|known| known.names() == h.names())
         };
         let mut more: Vec<Hypothesis> = rough
@@ -197,7 +197,7 @@ impl Search<'_> {
         let plainer = |h: &&Hypothesis| {
             h.fit.free.len() < best.fit.free.len()
                 && h.fit.cost() - best.fit.cost() < allowed
-                && stands_for(h, best)
+                && is_equivalent(h, best)
         };
         let plainest = (full.iter().enumerate())
             .filter(|(_, h)| plainer(h))

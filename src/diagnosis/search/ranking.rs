@@ -2,7 +2,7 @@
 
 use super::Search;
 use crate::diagnosis::fit::cross_validation::{Depth, LeftOut, left_out};
-use crate::diagnosis::fit::hypothesis::{Hypothesis, stands_for};
+use crate::diagnosis::fit::hypothesis::{Hypothesis, is_equivalent};
 use crate::diagnosis::fit::model_error::ModelError;
 
 /// An explanation among others.
@@ -53,7 +53,7 @@ pub(in crate::diagnosis) fn rank(search: &Search<'_>, found: Vec<Hypothesis>) ->
         let others = sums.iter().enumerate().skip(1);
         // A richer law in place of a plain one predicts a little better whether or not it is at work: the search has weighed them.
         let others =
-            others.filter(|(i, _)| !stands_for(&ranked[*i].hypothesis, &ranked[0].hypothesis));
+            others.filter(|(i, _)| !is_equivalent(&ranked[*i].hypothesis, &ranked[0].hypothesis));
         let predicts = others.filter_map(|(i, sum)| Some((i, (*sum)?)));
         let better = predicts.min_by(|a, b| a.1.total_cmp(&b.1));
         if let Some((index, sum)) = better
@@ -77,7 +77,7 @@ fn odds(search: &Search<'_>, first: &Ranked, other: &Ranked) -> f64 {
     let (plain, richer) = (&first.hypothesis, &other.hypothesis);
     let passed_over = other.score < first.score
         && richer.fit.free.len() > plain.fit.free.len()
-        && stands_for(plain, richer);
+        && is_equivalent(plain, richer);
     let behind = match passed_over {
         true => search.penalty(richer) - search.penalty(plain),
         false => other.score - first.score,

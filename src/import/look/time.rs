@@ -413,7 +413,7 @@ fn of_numbers(
         numbers.by_name(of_name, choice);
     } else if let Some(unit) = numbers.by_size {
         let why = format!("{} is of the size of such stamps", rise.ends[0]);
-        put_unit(choice, unit, &rise, &why);
+        set_unit(choice, unit, &rise, &why);
         choice.because.is_certain = said.is_some_and(|said| numbers.fits(unit, said.rate));
     } else {
         numbers.by_steps(choice);
@@ -441,13 +441,13 @@ impl Numbers<'_> {
             };
             let first = shown(self.rise.ends[0]);
             let why = format!("its name says {}, but {first} is {as_told}", unit.name);
-            put_unit(choice, other, &self.rise, &why);
+            set_unit(choice, other, &self.rise, &why);
             choice.because.is_certain = false;
             return;
         }
         let sized = self.by_size.filter(|other| other.factor == unit.factor);
         let unit = sized.unwrap_or(unit);
-        put_unit(choice, unit, &self.rise, &of_name.because.why);
+        set_unit(choice, unit, &self.rise, &of_name.because.why);
         choice.because.is_certain = of_name.because.is_certain;
         if let Some(said) = self.said.filter(|said| !self.fits(unit, said.rate)) {
             choice.because.is_certain = false;
@@ -468,12 +468,12 @@ impl Numbers<'_> {
             return;
         }
         if let Some(unit) = self.by_stamps {
-            put_unit(choice, unit, &self.rise, "as other stamps of the log tell");
+            set_unit(choice, unit, &self.rise, "as other stamps of the log tell");
             return;
         }
         if let (Some(said), Some(unit)) = (self.said, by_header) {
             let why = format!("the header says `{}`", said.words);
-            put_unit(choice, unit, &self.rise, &why);
+            set_unit(choice, unit, &self.rise, &why);
             return;
         }
         let usual: Vec<&LogUnit> = tried()
@@ -484,7 +484,7 @@ impl Numbers<'_> {
             && step != 1.0
         {
             let why = format!("nothing says it; steps of {}", shown(step));
-            put_unit(choice, only, &self.rise, &why);
+            set_unit(choice, only, &self.rise, &why);
             choice.because = Because::likely(format!(
                 "{why} make {} samples a second of it",
                 shown(choice.rate)
@@ -528,7 +528,7 @@ impl Numbers<'_> {
 }
 
 /// Puts a unit and why it is that.
-fn put_unit(choice: &mut TimeChoice, unit: &LogUnit, rise: &Rise, why: &str) {
+fn set_unit(choice: &mut TimeChoice, unit: &LogUnit, rise: &Rise, why: &str) {
     choice.keys.push(("unit", format!("{:?}", unit.name)));
     choice.rate = 1.0 / (unit.factor * rise.step);
     choice.because = Because::certain(format!(

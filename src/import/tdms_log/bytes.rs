@@ -9,15 +9,15 @@ pub(super) struct Bytes<'a> {
 
 /// The end of the bytes where more were expected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Ended;
+pub(super) struct EndOfData;
 
 macro_rules! number {
     ($($name:ident, $kind:ty;)*) => {
         $(
             /// The next number.
-            pub fn $name(&mut self) -> Result<$kind, Ended> {
+            pub fn $name(&mut self) -> Result<$kind, EndOfData> {
                 const SIZE: usize = size_of::<$kind>();
-                let own = self.take(SIZE)?.try_into().map_err(|_| Ended)?;
+                let own = self.take(SIZE)?.try_into().map_err(|_| EndOfData)?;
                 Ok(if self.is_big { <$kind>::from_be_bytes(own) } else { <$kind>::from_le_bytes(own) })
             }
         )*
@@ -39,20 +39,20 @@ impl<'a> Bytes<'a> {
     }
 
     /// So many bytes.
-    pub fn take(&mut self, count: usize) -> Result<&'a [u8], Ended> {
-        let (own, rest) = self.rest.split_at_checked(count).ok_or(Ended)?;
+    pub fn take(&mut self, count: usize) -> Result<&'a [u8], EndOfData> {
+        let (own, rest) = self.rest.split_at_checked(count).ok_or(EndOfData)?;
         self.rest = rest;
         Ok(own)
     }
 
     /// A text with its length before it.
-    pub fn text(&mut self) -> Result<String, Ended> {
+    pub fn text(&mut self) -> Result<String, EndOfData> {
         let length = self.u32()? as usize;
         Ok(String::from_utf8_lossy(self.take(length)?).into_owned())
     }
 
     /// A stamp: seconds since 1904 and parts of 2^64 of one [ns since 1970]; none where it is zero.
-    pub fn stamp(&mut self) -> Result<Option<i64>, Ended> {
+    pub fn stamp(&mut self) -> Result<Option<i64>, EndOfData> {
         const FROM_1904_TO_1970: i64 = 2_082_844_800;
         let (seconds, parts) = if self.is_big {
             (self.i64()?, self.u64()?)

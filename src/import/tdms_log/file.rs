@@ -9,7 +9,7 @@
 
 use std::collections::BTreeMap;
 
-use super::bytes::{Bytes, Ended};
+use super::bytes::{Bytes, EndOfData};
 use super::scaling::{Property, Scales};
 use crate::recording::table::Cells;
 
@@ -146,12 +146,12 @@ impl Reader {
         &mut self,
         from: &mut Bytes<'_>,
         contents: u32,
-    ) -> Result<Result<(), Ended>, String> {
+    ) -> Result<Result<(), EndOfData>, String> {
         if contents & NEW_OBJECTS != 0 {
             self.active.clear();
         }
         let mut refused = None;
-        let mut read = || -> Result<(), Ended> {
+        let mut read = || -> Result<(), EndOfData> {
             for _ in 0..from.u32()? {
                 let path = from.text()?;
                 let place = self.place(path);
@@ -186,8 +186,8 @@ impl Reader {
             }
             Ok(())
         };
-        let ended = read();
-        refused.map_or(Ok(ended), Err)
+        let outcome = read();
+        refused.map_or(Ok(outcome), Err)
     }
 
     /// Where an object stands, a new one at the end.
@@ -256,7 +256,7 @@ impl Reader {
 }
 
 /// Reads the index of an object's raw data; whether it has any in the segment, or why it cannot be read.
-fn index(from: &mut Bytes<'_>, object: &mut Object) -> Result<Result<bool, String>, Ended> {
+fn index(from: &mut Bytes<'_>, object: &mut Object) -> Result<Result<bool, String>, EndOfData> {
     match from.u32()? {
         NO_DATA => return Ok(Ok(false)),
         AS_BEFORE => return Ok(Ok(object.index.is_some())),
@@ -304,7 +304,7 @@ fn size_of_kind(kind: u32) -> Option<u64> {
 }
 
 /// A number of a type; none of one that is no number.
-fn number(from: &mut Bytes<'_>, kind: u32) -> Result<Option<f64>, Ended> {
+fn number(from: &mut Bytes<'_>, kind: u32) -> Result<Option<f64>, EndOfData> {
     Ok(Some(match kind {
         1 => f64::from(from.i8()?),
         2 => f64::from(from.i16()?),
@@ -322,7 +322,7 @@ fn number(from: &mut Bytes<'_>, kind: u32) -> Result<Option<f64>, Ended> {
 }
 
 /// Reads a property; none of a type that TDMS does not have.
-fn property(from: &mut Bytes<'_>) -> Result<Option<Property>, Ended> {
+fn property(from: &mut Bytes<'_>) -> Result<Option<Property>, EndOfData> {
     let kind = from.u32()?;
     Ok(match kind {
         TEXT => Some(Property::Text(from.text()?)),

@@ -40,7 +40,7 @@ pub(super) fn base(
         // The rig carries the piston: what it weighs does not show unless it is given.
         plant.device.moving_mass = LIGHT;
     }
-    let stands = |table: &str, key: &str| {
+    let is_given = |table: &str, key: &str| {
         let tables = keys.tables();
         let numbers = tables.iter().find(|(name, _)| *name == table);
         numbers.is_some_and(|(_, numbers)| numbers.contains_key(key))
@@ -48,7 +48,7 @@ pub(super) fn base(
     let parts = plant.parts;
     let asked = |dotted: &str| {
         let (table, key) = dotted.split_once('.').unwrap_or(("", dotted));
-        needs(parts, dotted) || stands(table, key)
+        needs(parts, dotted) || is_given(table, key)
     };
     let mut tolerances = Vec::new();
     for known in NUMBERS.iter().filter(|known| asked(known.name)) {

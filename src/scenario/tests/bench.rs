@@ -45,11 +45,11 @@ fn every_kind_of_load_is_read() {
     let moved = "peak_to_peak_mm = 20\nfrequency_hz = 0.5\nstart_s = 4\n";
     assert_eq!(bench(FREE, FREE).load, LoadScenario::Free);
     let load_cell = bench(FREE, &format!("kind = \"load_cell\"\n{given}"));
-    let standing = LoadScenario::Contact {
+    let surface = LoadScenario::Contact {
         position: 0.035,
         motion: None,
     };
-    assert_eq!(load_cell.load, standing);
+    assert_eq!(load_cell.load, surface);
     assert_eq!(load_cell.nominal.contact, contact);
     let surface = bench(FREE, &format!("kind = \"surface\"\n{given}{moved}"));
     let moving = LoadScenario::Contact {

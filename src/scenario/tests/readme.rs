@@ -266,12 +266,12 @@ fn outcome(format: Format, key: &str, value: Option<Value>) -> Result<String, St
             // A value that is given is no default that somebody judged, though it is the same.
             let device = match &mut scenario {
                 AnyScenario::Cell(cell) => {
-                    cell.judged.clear();
+                    cell.assumed.clear();
                     &mut cell.device
                 }
                 AnyScenario::Bench(bench) => &mut bench.device,
             };
-            device.judged.clear();
+            device.assumed.clear();
             Ok(format!("{scenario:?}"))
         }
         Err(error) => Err(error.to_string()),

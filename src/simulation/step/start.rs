@@ -41,8 +41,8 @@ pub(super) fn clearance(cell: &Cell, positions: &[f64]) -> ClearanceWatch {
         .cell
         .aside(&cell.middle, cell.middle.point);
     let part = DPose3::from_translation(aside) * cell.setup.part.world_from_part;
-    let standing = cell.setup.collision.with_part_at(part);
-    ClearanceWatch::new(standing, &to_array(positions))
+    let model = cell.setup.collision.with_part_at(part);
+    ClearanceWatch::new(model, &to_array(positions))
 }
 
 /// Positions of as many joints as there are, and zeros.

@@ -137,8 +137,8 @@ fn count_running(simulation: &Simulation<'_>, values: &[f64], reduced: &[usize])
         next_frame,
         clearance: _,
         cutting: _,
-        behind,
-        pace,
+        feed_lag,
+        feed_override,
     } = simulation;
     let borrowed: &RunningDevice<'_> = device;
     assert!(std::ptr::eq(
@@ -154,5 +154,8 @@ fn count_running(simulation: &Simulation<'_>, values: &[f64], reduced: &[usize])
     assert_eq!(count(&read, values), never);
     assert_eq!(count(its_controller, values), reduced);
     let rest = (reference, touches, pressed, answer, carried, slide_force);
-    assert_eq!(count(&(rest, next_frame, behind, pace), values), never);
+    assert_eq!(
+        count(&(rest, next_frame, feed_lag, feed_override), values),
+        never
+    );
 }

@@ -114,10 +114,10 @@ impl Surface {
                 .total_cmp(&other.0)
                 .then((one.1, one.2).cmp(&(other.1, other.2)))
         });
-        let mut stands_for: BTreeMap<u32, u32> = BTreeMap::new();
+        let mut is_equivalent: BTreeMap<u32, u32> = BTreeMap::new();
         let mut moved = Vec::new();
         for (distance, one, other) in pairs {
-            if stands_for.contains_key(&one) || stands_for.contains_key(&other) {
+            if is_equivalent.contains_key(&one) || is_equivalent.contains_key(&other) {
                 continue;
             }
             // The vertex of more triangles stays.
@@ -126,10 +126,10 @@ impl Surface {
             } else {
                 (other, one)
             };
-            if stands_for.values().any(|kept| *kept == gone) {
+            if is_equivalent.values().any(|kept| *kept == gone) {
                 continue;
             }
-            stands_for.insert(gone, keep);
+            is_equivalent.insert(gone, keep);
             moved.push((gone, distance));
         }
         for (gone, distance) in &moved {
@@ -138,7 +138,8 @@ impl Surface {
         }
         let places: Vec<DVec3> = moved.iter().map(|(gone, _)| self.at(*gone)).collect();
         for triangle in &mut self.triangles {
-            *triangle = triangle.map(|vertex| stands_for.get(&vertex).copied().unwrap_or(vertex));
+            *triangle =
+                triangle.map(|vertex| is_equivalent.get(&vertex).copied().unwrap_or(vertex));
         }
         self.triangles
             .retain(|[a, b, c]| a != b && b != c && c != a);

@@ -37,7 +37,7 @@ impl Diagnosis {
         }
         let unlisted = self.best().unlisted().is_some()
             && in_headline(self.confidence(UNLISTED), &self.doubts(UNLISTED));
-        if unlisted || self.leaves_without_a_name() {
+        if unlisted || self.leaves_model_discrepancy() {
             names.push("physics that no known effect explains".to_owned());
         }
         names

@@ -96,7 +96,7 @@ impl Diagnosis {
 
     /// What known effects leave far above the noise.
     fn left_words(&self) -> Option<String> {
-        self.leaves_without_a_name().then(|| {
+        self.leaves_model_discrepancy().then(|| {
             "Beside it, or in its place, there is physics that no known effect explains: a channel is left far above its noise.".to_owned()
         })
     }

@@ -170,13 +170,13 @@ mod tests {
 
     #[test]
     fn ruled_out_is_what_was_fitted_in_full_and_is_far() {
-        let judged = |in_full, odds: f64| {
+        let verdict = |in_full, odds: f64| {
             let rival = considered("runout", in_full, odds.log10());
             (rival.is_close(), rival.is_ruled_out())
         };
-        assert_eq!(judged(true, 1.0 / 6.9), (true, false));
-        assert_eq!(judged(false, 1.0 / 6.9), (true, false));
-        assert_eq!(judged(true, 1e-3), (false, true));
-        assert_eq!(judged(false, 1e-3), (false, false));
+        assert_eq!(verdict(true, 1.0 / 6.9), (true, false));
+        assert_eq!(verdict(false, 1.0 / 6.9), (true, false));
+        assert_eq!(verdict(true, 1e-3), (false, true));
+        assert_eq!(verdict(false, 1e-3), (false, false));
     }
 }

@@ -61,12 +61,12 @@ impl RunCourse {
             false => v.abs(),
         });
         let along: Vec<f64> = along.collect();
-        let stands = (0..count).find(|i| time[*i] > slid + STARTED && along[*i] < SLIDES);
+        let stops = (0..count).find(|i| time[*i] > slid + STARTED && along[*i] < SLIDES);
         Self {
             along,
             contact,
             speed: speed[touches.min(count - 1)],
-            slides: slides.map(|from| [from, stands.map_or(time[count - 1], |i| time[i])]),
+            slides: slides.map(|from| [from, stops.map_or(time[count - 1], |i| time[i])]),
             end: time[count - 1],
             course: FlangeCourse {
                 start: time[0],

@@ -50,7 +50,7 @@ pub(super) fn outlier(
     };
     let of = |channel: usize| {
         (0..time.len())
-            .filter(|index| sight.stands_alone(channel, *index) && sight.denied(channel, *index))
+            .filter(|index| sight.is_isolated(channel, *index) && sight.denied(channel, *index))
             .collect()
     };
     (0..readings.len()).map(of).collect()
@@ -58,7 +58,7 @@ pub(super) fn outlier(
 
 impl Sight<'_> {
     /// Whether a reading is far from its neighbours, which go on as if it were not there.
-    fn stands_alone(&self, channel: usize, index: usize) -> bool {
+    fn is_isolated(&self, channel: usize, index: usize) -> bool {
         let departures = &self.departures[channel];
         let size = departures[index].abs();
         // Most readings end here.

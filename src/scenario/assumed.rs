@@ -13,7 +13,7 @@ const OF_DEVICE: &str = "contact force and stroke";
 
 /// A value in use that nobody has measured in public.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct JudgedValue {
+pub struct AssumedValue {
     /// Its dotted key.
     pub key: String,
     /// Whether it is the program's or the device model's own value, not one that the scenario gives.
@@ -23,39 +23,39 @@ pub struct JudgedValue {
 }
 
 /// Judged values of a cell's file that works its edge; all of them are of tool and edge.
-pub(super) fn of_cell(document: &Document<'_>, tables: &[(String, Vec<Key>)]) -> Vec<JudgedValue> {
+pub(super) fn of_cell(document: &Document<'_>, tables: &[(String, Vec<Key>)]) -> Vec<AssumedValue> {
     let has = |table: &str| document.keys_in(table).next().is_some();
     if !has("removal") {
         return Vec::new();
     }
     let rows = (tables.iter()).flat_map(|(table, keys)| keys.iter().map(move |key| (table, key)));
-    let judged = rows.filter_map(|(table, key)| {
-        let decides = key.judged?.to_owned();
+    let assumed = rows.filter_map(|(table, key)| {
+        let decides = key.assumed?.to_owned();
         let given = document.keys_in(table).any(|given| given == key.name);
         // A burr's numbers count where there is one; no wear and the like decide nothing.
         let usual = table != "workpiece.burr" || has(table);
         let default = usual && key.usual_number().is_some();
-        (given || default).then_some(JudgedValue {
+        (given || default).then_some(AssumedValue {
             key: join(table, key.name),
             default: !given,
             decides,
         })
     });
-    let mut judged: Vec<JudgedValue> = judged.collect();
-    judged.sort_by(|one, other| one.key.cmp(&other.key));
-    judged
+    let mut assumed: Vec<AssumedValue> = assumed.collect();
+    assumed.sort_by(|one, other| one.key.cmp(&other.key));
+    assumed
 }
 
 /// Values of a device model file that it says are judged, but for those given above it and those that switch something off.
 pub(super) fn of_model(
-    judged: &[String],
+    assumed: &[String],
     numbers: &BTreeMap<&'static str, f64>,
     is_given: impl Fn(&str) -> bool,
-) -> Vec<JudgedValue> {
+) -> Vec<AssumedValue> {
     let off = |value: &f64| *value == 0.0 || value.is_infinite();
     let is_off = |key: &str| numbers.get(key).is_some_and(off);
-    let in_use = judged.iter().filter(|key| !is_off(key) && !is_given(key));
-    let found = in_use.map(|key| JudgedValue {
+    let in_use = assumed.iter().filter(|key| !is_off(key) && !is_given(key));
+    let found = in_use.map(|key| AssumedValue {
         key: format!("device.{key}"),
         default: true,
         decides: OF_DEVICE.to_owned(),
@@ -73,7 +73,7 @@ mod tests {
 
     #[test]
     fn a_models_judged_values_count_where_something_is_on() {
-        let judged = ["a_n", "b_n", "c", "e", "f"].map(str::to_owned);
+        let assumed = ["a_n", "b_n", "c", "e", "f"].map(str::to_owned);
         let numbers = [
             ("a_n", 3.0),
             ("b_n", 0.0),
@@ -81,7 +81,7 @@ mod tests {
             ("d", 2.0),
             ("f", 1.0),
         ];
-        let found = of_model(&judged, &BTreeMap::from(numbers), |key| key == "f");
+        let found = of_model(&assumed, &BTreeMap::from(numbers), |key| key == "f");
         let keys: Vec<&str> = found.iter().map(|value| value.key.as_str()).collect();
         assert_eq!(keys, ["device.a_n", "device.e"]);
     }

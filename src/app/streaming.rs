@@ -8,16 +8,16 @@ use super::run::{Listener, RunPart};
 use crate::cell::Cell;
 use crate::recording::{Recording, RecordingError};
 use crate::scene::Scene;
-use crate::viewer::{EncodedRrd, GrowingRrd, PART_SAMPLES, RerunOptions};
+use crate::viewer::{EncodedRrd, PART_SAMPLES, RerunOptions, StreamingRrd};
 
 /// A recording that is encoded while it is made.
-pub(super) struct GrowingFile<'scope> {
+pub(super) struct StreamingRecording<'scope> {
     file: &'scope Path,
     parts: Sender<RunPart>,
-    thread: ScopedJoinHandle<'scope, Result<Option<GrowingRrd>, RecordingError>>,
+    thread: ScopedJoinHandle<'scope, Result<Option<StreamingRrd>, RecordingError>>,
 }
 
-impl<'scope> GrowingFile<'scope> {
+impl<'scope> StreamingRecording<'scope> {
     /// Begins to encode what its listener is given. `file` is where it will stand, `origin` tells what the run is made of.
     pub(super) fn begin<'env>(
         scope: &'scope Scope<'scope, 'env>,
@@ -56,7 +56,7 @@ impl<'scope> GrowingFile<'scope> {
         let encoded = self.thread.join();
         let encoded = encoded.unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
         match encoded {
-            Some(growing) => growing.end(recording, scene, summary_markdown),
+            Some(streaming) => streaming.end(recording, scene, summary_markdown),
             None => Err(RecordingError::write(self.file, "nothing was recorded")),
         }
     }
@@ -68,16 +68,18 @@ fn encode(
     origin: &str,
     options: &RerunOptions,
     parts: &Receiver<RunPart>,
-) -> Result<Option<GrowingRrd>, RecordingError> {
-    let mut growing: Option<GrowingRrd> = None;
+) -> Result<Option<StreamingRrd>, RecordingError> {
+    let mut streaming: Option<StreamingRrd> = None;
     for part in parts {
         let (samples, scene) = part.shown(cell)?;
-        match &mut growing {
-            Some(growing) => growing.add(&samples, &scene)?,
+        match &mut streaming {
+            Some(streaming) => streaming.add(&samples, &scene)?,
             None => {
-                growing = Some(GrowingRrd::begin(file, origin, &samples, &scene, options)?);
+                streaming = Some(StreamingRrd::begin(
+                    file, origin, &samples, &scene, options,
+                )?);
             }
         }
     }
-    Ok(growing)
+    Ok(streaming)
 }

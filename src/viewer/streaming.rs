@@ -25,7 +25,7 @@ use crate::scene::Scene;
 pub const PART_SAMPLES: usize = signals::CHUNK_ROWS;
 
 /// A recording that is encoded while it is made.
-pub struct GrowingRrd {
+pub struct StreamingRrd {
     rrd: RrdWriter,
     options: RerunOptions,
     /// File of which errors speak.
@@ -36,7 +36,7 @@ pub struct GrowingRrd {
     path_length: f64,
 }
 
-impl GrowingRrd {
+impl StreamingRrd {
     /// Begins with the first samples and frames of a run, at least one sample. `origin` tells what the run is made of: runs of which it differs are told
     /// apart in a viewer even where their first samples are the same.
     ///
@@ -59,7 +59,7 @@ impl GrowingRrd {
             cell::write_bodies(&mut rrd, scene)?;
             Ok(rrd)
         };
-        let mut growing = Self {
+        let mut streaming = Self {
             rrd: start().map_err(|error| RecordingError::write(file, error))?,
             options: options.clone(),
             file: file.to_owned(),
@@ -67,8 +67,8 @@ impl GrowingRrd {
             number,
             path_length: 0.0,
         };
-        growing.add(samples, scene)?;
-        Ok(growing)
+        streaming.add(samples, scene)?;
+        Ok(streaming)
     }
 
     /// Adds the samples and frames that have come since, at least one sample.
