@@ -18,8 +18,6 @@
   const MARGIN = 40;
   // Bodies lie back by half a line's width, so that of lines on their edges the whole width is seen.
   const back = (ratio) => ({ polygonOffset: true, polygonOffsetFactor: 5 * ratio, polygonOffsetUnits: 4 });
-  // Triangles up to which normals are smoothed; of more, a facet is smaller than can be seen.
-  const SMOOTHED = 120000;
 
   const drawings = [];
 
@@ -55,9 +53,14 @@
     }
 
     build() {
-      if (this.renderer) return;
-      this.frame();
-      this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, alpha: true });
+      const canvas = element("canvas");
+      const context = canvas.getContext("webgl2", { antialias: true, alpha: true, powerPreference: "default" });
+      if (!context) {
+        this.place.prepend(element("p", { class: "hint" }, "This browser does not draw in 3D (WebGL 2 is off or missing): here is a picture instead."));
+        return;
+      }
+      this.frame(canvas);
+      this.renderer = new THREE.WebGLRenderer({ canvas, context, antialias: true, alpha: true });
       this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
       this.scene = new THREE.Scene();
       this.camera = new THREE.OrthographicCamera();
@@ -83,10 +86,12 @@
     }
 
     // What stands around the canvas.
-    frame() {
+    frame(canvas) {
       const { told, place } = this;
       place.classList.add("live");
-      this.canvas = element("canvas", { tabindex: "0", role: "application", "aria-label": `${told.name}. Arrow keys turn it, plus and minus zoom, 0 shows all again.` });
+      this.canvas = canvas;
+      const name = `${told.name}. Arrow keys turn it, plus and minus zoom, 0 shows all again.`;
+      Object.entries({ tabindex: "0", role: "application", "aria-label": name }).forEach(([key, value]) => canvas.setAttribute(key, value));
       this.over = element("div", { class: "over" });
       this.tip = element("div", { class: "tip", hidden: "" });
       this.bar = element("div", { class: "bar" }, element("i"), element("span"));
@@ -130,9 +135,10 @@
       geometry.setAttribute("position", new THREE.BufferAttribute(floats(told.corners), 3));
       const triangles = new Uint32Array(buffer(told.triangles));
       geometry.setIndex(new THREE.BufferAttribute(triangles, 1));
-      const smooth = triangles.length / 3 <= SMOOTHED;
-      const material = new THREE.MeshLambertMaterial({ flatShading: !smooth, ...(told.shade ? {} : back(this.renderer.getPixelRatio())) });
-      const mesh = new THREE.Mesh(smooth ? THREE.toCreasedNormals(geometry, 0.5) : geometry, material);
+      // Faces that meet at a sharp edge do not share corners.
+      geometry.computeVertexNormals();
+      const material = new THREE.MeshLambertMaterial(told.shade ? {} : back(this.renderer.getPixelRatio()));
+      const mesh = new THREE.Mesh(geometry, material);
       mesh.layers.enable(1);
       mesh.userData = { told, material };
       mesh.renderOrder = -2;
@@ -629,15 +635,23 @@
     }
   }
 
+  // The library is unpacked once a drawing is near: numbers and charts of the page do not wait for it.
+  let library = null;
+  const loaded = () => {
+    library ??= (async () => {
+      const packed = new Blob([buffer(document.getElementById("space-library").textContent)]);
+      const text = await new Response(packed.stream().pipeThrough(new DecompressionStream("gzip"))).text();
+      document.head.append(element("script", {}, text));
+    })();
+    return library;
+  };
   const places = [...document.querySelectorAll("div.space")];
-  if (!document.createElement("canvas").getContext("webgl2")) {
-    for (const place of places) place.prepend(element("p", { class: "hint" }, "This browser does not draw in 3D (WebGL 2 is off or missing): here is a picture instead."));
-    return;
-  }
   for (const place of places) drawings.push(new Space(place));
   const watch = new IntersectionObserver((entries) => {
-    for (const entry of entries) {
-      if (entry.isIntersecting) drawings.find((one) => one.place === entry.target).build();
+    for (const { isIntersecting, target } of entries) {
+      if (!isIntersecting) continue;
+      watch.unobserve(target);
+      loaded().then(() => drawings.find((one) => one.place === target).build());
     }
   }, { rootMargin: "400px" });
   for (const place of places) watch.observe(place);

@@ -11,8 +11,8 @@ use crate::scene::error_scale::ErrorScale;
 
 /// Millimetres a metre.
 pub(super) const MILLIMETRES: f64 = 1e3;
-/// Triangles of a cell at most: about 1.4 MB of a page of less than 3 MB.
-const MOST_TRIANGLES: usize = 60_000;
+/// Triangles of a cell at most: about 0.7 MB of a page.
+const MOST_TRIANGLES: usize = 30_000;
 /// From the direction in which the edge looks longest, so that the part looks solid too [rad].
 const TURN: f64 = 0.4;
 /// Shades of a legend.

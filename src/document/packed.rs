@@ -1,13 +1,25 @@
 //! Numbers as a page holds them: little-endian words of four bytes in base64.
 
+use std::io::Write as _;
+
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use serde::de::Error as _;
 use serde::{Deserialize as _, Deserializer};
 
 /// Bytes as a text.
 pub(super) fn text(bytes: impl Iterator<Item = u8>) -> String {
     STANDARD.encode(bytes.collect::<Vec<u8>>())
+}
+
+/// Bytes compressed, as a text.
+pub(super) fn gzip(bytes: &[u8]) -> String {
+    let mut packed = GzEncoder::new(Vec::new(), Compression::best());
+    // Writing into memory does not fail.
+    let packed = packed.write_all(bytes).and_then(|()| packed.finish());
+    STANDARD.encode(packed.unwrap_or_default())
 }
 
 /// Words of a text.

@@ -1,224 +1,109 @@
-//! Triangles taken out of bodies where that is seen least: plane faces first, round ones as little as all others.
-//!
-//! Sides are drawn together in the order of the error that it makes, the sum of squared distances of the kept end from the planes of all
-//! triangles that met there (M. Garland, P. Heckbert, Surface simplification using quadric error metrics, SIGGRAPH 1997), as a share
-//! of the size of the body. Kept corners stay where they are, so that a bore keeps its radius.
+//! Bodies with fewer triangles, by meshoptimizer: what is flat loses its own first, and edges and bores keep their form.
 
-use std::cmp::Reverse;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::iter::successors;
 
 use glam::DVec3;
+use meshopt::{SimplifyOptions, simplify_decoder};
 
-/// Weight of a border's plane: what is open there would show as a gap [1].
-const BORDER: f64 = 10.0;
-/// Cosine beyond which a triangle may not turn in one step [1].
-const TURN: f64 = 0.5;
-/// Share of the squared length of a side added to its error, so that of equals the shortest goes first [1].
-const LENGTH: f64 = 1e-9;
+/// Cosine of the angle between two faces beyond which the edge between them is sharp [1].
+const SHARP: f64 = 0.88;
+/// Errors that are allowed, as shares of a body's size [1]: the first, what each has over the one before, and the last.
+const ERRORS: [f64; 3] = [5e-5, 1.41, 0.3];
+/// From here on edges may go too: where nothing else is left, fewer triangles come before a form that nobody sees any more.
+const EDGES_GO: f64 = 0.02;
 
-/// Bodies with corners of their own, as one set of triangles.
-pub(super) struct Bodies {
+/// A body's surface; faces that meet at a sharp edge do not share its corners.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Surface {
     /// Corners [m].
     pub(super) corners: Vec<DVec3>,
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Of each corner the size of its body [m].
-    pub(super) sizes: Vec<f64>,
 }
 
-/// A symmetric 4 x 4 matrix: squared distance from planes.
-#[derive(Debug, Clone, Copy, Default)]
-struct Quadric([f64; 10]);
-
-impl Quadric {
-    /// Of a plane through a point.
-    fn plane(normal: DVec3, point: DVec3, weight: f64) -> Self {
-        let [a, b, c] = normal.to_array();
-        let d = -normal.dot(point);
-        let terms = [
-            a * a,
-            a * b,
-            a * c,
-            a * d,
-            b * b,
-            b * c,
-            b * d,
-            c * c,
-            c * d,
-            d * d,
-        ];
-        Self(terms.map(|term| weight * term))
-    }
-
-    fn add(&mut self, other: &Self) {
-        for (own, term) in self.0.iter_mut().zip(other.0) {
-            *own += term;
-        }
-    }
-
-    fn at(&self, point: DVec3) -> f64 {
-        let [x, y, z] = point.to_array();
-        let [aa, ab, ac, ad, bb, bc, bd, cc, cd, dd] = self.0;
-        let squares = aa * x * x + bb * y * y + cc * z * z;
-        squares + 2.0 * (ab * x * y + ac * x * z + ad * x + bc * y * z + bd * y + cd * z) + dd
-    }
-}
-
-/// A side to be drawn together: its error, by bits, as errors are not negative; the end that goes, the one that stays, and their ages.
-type Step = Reverse<(u64, u32, u32, [u32; 2])>;
-
-struct Work {
-    /// Corners in shares of the size of their body, about the first one, so that rounding is small.
-    places: Vec<DVec3>,
-    triangles: Vec<Option<[u32; 3]>>,
-    around: Vec<Vec<u32>>,
-    quadrics: Vec<Quadric>,
-    ages: Vec<u32>,
-    heap: BinaryHeap<Step>,
-}
-
-/// At most so many of the triangles, over the same corners.
-pub(super) fn simplify(bodies: &Bodies, most: usize) -> Vec<[u32; 3]> {
-    let mut left = bodies.triangles.len();
-    if left <= most {
-        return bodies.triangles.clone();
-    }
-    let mut work = Work::new(bodies);
-    while left > most {
-        let Some(Reverse((_, gone, kept, ages))) = work.heap.pop() else {
+/// At most so many triangles together, as far as that is possible, each body with the same error for its size.
+pub(super) fn simplify(bodies: &mut [Surface], most: usize) {
+    let [first, ratio, last] = ERRORS;
+    let errors = successors(Some(first), |error| Some(ratio * error));
+    for error in errors.take_while(|error| *error < last) {
+        let count: usize = bodies.iter().map(|body| body.triangles.len()).sum();
+        if count <= most {
             break;
-        };
-        if ages == [gone, kept].map(|corner| work.ages[corner as usize])
-            && work.may_draw(gone, kept)
-        {
-            left -= work.draw(gone, kept);
+        }
+        for body in &mut *bodies {
+            body.triangles = simplified(body, error);
         }
     }
-    work.triangles.into_iter().flatten().collect()
 }
 
-impl Work {
-    fn new(bodies: &Bodies) -> Self {
-        let count = bodies.corners.len();
-        let origin = bodies.corners.first().copied().unwrap_or_default();
-        let places = bodies.corners.iter().zip(&bodies.sizes);
-        let mut work = Self {
-            places: places
-                .map(|(corner, size)| (*corner - origin) / *size)
-                .collect(),
-            triangles: bodies
-                .triangles
-                .iter()
-                .map(|triangle| Some(*triangle))
-                .collect(),
-            around: vec![Vec::new(); count],
-            quadrics: vec![Quadric::default(); count],
-            ages: vec![0; count],
-            heap: BinaryHeap::new(),
-        };
-        let mut sides: BTreeMap<(u32, u32), (usize, u32)> = BTreeMap::new();
-        for (index, triangle) in bodies.triangles.iter().enumerate() {
-            let normal = work.normal(*triangle);
-            let quadric = Quadric::plane(normal, work.place(triangle[0]), 1.0);
-            for corner in 0..3 {
-                let (from, to) = (triangle[corner], triangle[(corner + 1) % 3]);
-                work.around[from as usize].push(index as u32);
-                work.quadrics[from as usize].add(&quadric);
-                let side = sides
-                    .entry((from.min(to), from.max(to)))
-                    .or_insert((0, index as u32));
-                side.0 += 1;
-            }
-        }
-        for (&(from, to), &(count, triangle)) in &sides {
-            if count == 1 {
-                let along = (work.place(to) - work.place(from)).normalize_or_zero();
-                let normal = work
-                    .normal(bodies.triangles[triangle as usize])
-                    .cross(along);
-                let quadric = Quadric::plane(normal, work.place(from), BORDER);
-                work.quadrics[from as usize].add(&quadric);
-                work.quadrics[to as usize].add(&quadric);
-            }
-        }
-        for &(from, to) in sides.keys() {
-            work.offer(from, to);
-        }
-        work
-    }
+fn simplified(body: &Surface, error: f64) -> Vec<[u32; 3]> {
+    let origin = body.corners.first().copied().unwrap_or_default();
+    let places = body.corners.iter();
+    let places: Vec<[f32; 3]> = places
+        .map(|corner| (*corner - origin).as_vec3().to_array())
+        .collect();
+    let mut options = SimplifyOptions::Prune;
+    options.set(SimplifyOptions::Permissive, error > EDGES_GO);
+    let indices = body.triangles.as_flattened();
+    let kept = simplify_decoder(indices, &places, 0, error as f32, options, None);
+    kept.as_chunks::<3>().0.to_vec()
+}
 
-    fn place(&self, corner: u32) -> DVec3 {
-        self.places[corner as usize]
-    }
-
-    fn normal(&self, triangle: [u32; 3]) -> DVec3 {
-        let [a, b, c] = triangle.map(|corner| self.place(corner));
+/// A surface in which a corner is one for faces that pass smoothly into one another there, and several where an edge is sharp.
+pub(super) fn split_at_edges(corners: &[DVec3], triangles: &[[u32; 3]]) -> Surface {
+    let normal = |[a, b, c]: [u32; 3]| {
+        let [a, b, c] = [a, b, c].map(|corner| corners[corner as usize]);
         (b - a).cross(c - a).normalize_or_zero()
-    }
-
-    /// Puts a side in line, with the end that goes with the smaller error.
-    fn offer(&mut self, one: u32, other: u32) {
-        let mut quadric = self.quadrics[one as usize];
-        quadric.add(&self.quadrics[other as usize]);
-        let length = LENGTH * self.place(one).distance_squared(self.place(other));
-        let error = |kept: u32| quadric.at(self.place(kept)).max(0.0) + length;
-        let (gone, kept) = if error(one) <= error(other) {
-            (other, one)
-        } else {
-            (one, other)
-        };
-        let ages = [gone, kept].map(|corner| self.ages[corner as usize]);
-        self.heap
-            .push(Reverse((error(kept).to_bits(), gone, kept, ages)));
-    }
-
-    /// Whether no triangle turns over or loses its area.
-    fn may_draw(&self, gone: u32, kept: u32) -> bool {
-        self.around[gone as usize].iter().all(|&index| {
-            let Some(triangle) = self.triangles[index as usize] else {
-                return true;
-            };
-            if triangle.contains(&kept) || !triangle.contains(&gone) {
-                return true;
-            }
-            let moved = triangle.map(|corner| if corner == gone { kept } else { corner });
-            self.normal(triangle).dot(self.normal(moved)) > TURN
-        })
-    }
-
-    /// Draws a side together; returns the triangles that it took.
-    fn draw(&mut self, gone: u32, kept: u32) -> usize {
-        let quadric = self.quadrics[gone as usize];
-        self.quadrics[kept as usize].add(&quadric);
-        let mut taken = 0;
-        for index in std::mem::take(&mut self.around[gone as usize]) {
-            let Some(triangle) =
-                self.triangles[index as usize].filter(|triangle| triangle.contains(&gone))
-            else {
-                continue;
-            };
-            if triangle.contains(&kept) {
-                self.triangles[index as usize] = None;
-                taken += 1;
-            } else {
-                self.triangles[index as usize] =
-                    Some(triangle.map(|corner| if corner == gone { kept } else { corner }));
-                self.around[kept as usize].push(index);
-            }
+    };
+    let normals: Vec<DVec3> = triangles.iter().copied().map(normal).collect();
+    // Of each side its ends, and where in the list of all triangles' corners they stand.
+    let mut sides: Vec<([u32; 2], [usize; 2])> = Vec::with_capacity(3 * triangles.len());
+    for (number, triangle) in triangles.iter().enumerate() {
+        for side in 0..3 {
+            let ends = [side, (side + 1) % 3];
+            let mut places = ends.map(|end| (triangle[end], 3 * number + end));
+            places.sort_unstable();
+            sides.push((places.map(|place| place.0), places.map(|place| place.1)));
         }
-        self.ages[gone as usize] += 1;
-        self.ages[kept as usize] += 1;
-        let triangles = &self.triangles;
-        self.around[kept as usize].retain(|index| triangles[*index as usize].is_some());
-        let mut near: Vec<u32> = self.around[kept as usize]
-            .iter()
-            .filter_map(|index| self.triangles[*index as usize])
-            .flatten()
-            .collect();
-        near.sort_unstable();
-        near.dedup();
-        for other in near.into_iter().filter(|other| *other != kept) {
-            self.offer(kept, other);
-        }
-        taken
     }
+    sides.sort_unstable();
+    let mut groups: Vec<usize> = (0..3 * triangles.len()).collect();
+    for shared in sides.chunk_by(|one, other| one.0 == other.0) {
+        if let [(_, one), (_, other)] = shared
+            && normals[one[0] / 3].dot(normals[other[0] / 3]) > SHARP
+        {
+            join(&mut groups, one[0], other[0]);
+            join(&mut groups, one[1], other[1]);
+        }
+    }
+    let mut numbers = vec![u32::MAX; groups.len()];
+    let mut surface = Surface {
+        corners: Vec::new(),
+        triangles: Vec::with_capacity(triangles.len()),
+    };
+    for (number, triangle) in triangles.iter().enumerate() {
+        surface.triangles.push([0, 1, 2].map(|end| {
+            let group = first_of(&mut groups, 3 * number + end);
+            if numbers[group] == u32::MAX {
+                numbers[group] = surface.corners.len() as u32;
+                surface.corners.push(corners[triangle[end] as usize]);
+            }
+            numbers[group]
+        }));
+    }
+    surface
+}
+
+/// The member that stands for a group.
+fn first_of(groups: &mut [usize], mut member: usize) -> usize {
+    while groups[member] != member {
+        groups[member] = groups[groups[member]];
+        member = groups[member];
+    }
+    member
+}
+
+/// Makes one group of two.
+fn join(groups: &mut [usize], one: usize, other: usize) {
+    let [one, other] = [one, other].map(|member| first_of(groups, member));
+    groups[one.max(other)] = one.min(other);
 }

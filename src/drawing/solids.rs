@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::faces::{Face, faces};
-use super::simplify::{Bodies, simplify};
+use super::simplify::{Surface, simplify, split_at_edges};
 use crate::scene::Scene;
 use crate::scene::colour::Colour;
 
@@ -19,7 +19,7 @@ pub struct Solid {
     pub entity: String,
     /// Its colour.
     pub colour: Colour,
-    /// Corners in the world [m].
+    /// Corners in the world [m]; faces that meet at a sharp edge do not share them.
     pub corners: Vec<DVec3>,
     /// Corner indices, counter-clockwise from outside.
     pub triangles: Vec<[u32; 3]>,
@@ -34,36 +34,16 @@ pub(super) fn solids(scene: &Scene, frame: usize, most: usize) -> Vec<Solid> {
         let own = groups.entry((face.body, face.colour));
         own.or_default().push(face);
     }
-    let mut bodies = Bodies {
-        corners: Vec::new(),
-        triangles: Vec::new(),
-        sizes: Vec::new(),
+    let surface = |faces: &Vec<Face>| {
+        let (corners, triangles) = merged(faces, ONE);
+        split_at_edges(&corners, &triangles)
     };
-    // Of each group where its corners begin, and its triangles.
-    let mut ranges = Vec::new();
-    for faces in groups.values() {
-        let (low, high) = bounds(faces);
-        let (corners, triangles) = merged(faces, low, ONE);
-        let first = bodies.corners.len() as u32;
-        ranges.push((first, triangles.len()));
-        let size = (high - low).max_element().max(ONE);
-        bodies
-            .sizes
-            .extend(std::iter::repeat_n(size, corners.len()));
-        bodies.corners.extend(corners);
-        let shifted = triangles
-            .iter()
-            .map(|triangle| triangle.map(|corner| first + corner));
-        bodies.triangles.extend(shifted);
-    }
-    let mut kept = vec![Vec::new(); ranges.len()];
-    for triangle in simplify(&bodies, most) {
-        let group = ranges.partition_point(|(first, _)| *first <= triangle[0]) - 1;
-        kept[group].push(triangle);
-    }
-    let solids = groups.keys().zip(ranges).zip(kept);
-    let solids = solids.map(|(((body, colour), (_, whole)), triangles)| {
-        let (corners, triangles) = compact(&bodies.corners, &triangles);
+    let mut bodies: Vec<Surface> = groups.values().map(surface).collect();
+    let whole: Vec<usize> = bodies.iter().map(|body| body.triangles.len()).collect();
+    simplify(&mut bodies, most);
+    let solids = groups.keys().zip(bodies).zip(whole);
+    let solids = solids.map(|(((body, colour), surface), whole)| {
+        let (corners, triangles) = compact(&surface.corners, &surface.triangles);
         Solid {
             entity: scene.bodies[usize::from(*body) - 1].entity.clone(),
             colour: *colour,
@@ -73,15 +53,6 @@ pub(super) fn solids(scene: &Scene, frame: usize, most: usize) -> Vec<Solid> {
         }
     });
     solids.collect()
-}
-
-/// Opposite corners of the box about triangles.
-fn bounds(faces: &[Face]) -> (DVec3, DVec3) {
-    let corners = || faces.iter().flat_map(|face| face.corners);
-    let start = corners().next().unwrap_or_default();
-    corners().fold((start, start), |(low, high), corner| {
-        (low.min(corner), high.max(corner))
-    })
 }
 
 /// Triangles over the corners that they use.
@@ -101,13 +72,13 @@ fn compact(corners: &[DVec3], triangles: &[[u32; 3]]) -> (Vec<DVec3>, Vec<[u32; 
 }
 
 /// The first corner in each cell stands for all in it; triangles that lose their area by it are left out.
-fn merged(faces: &[Face], low: DVec3, cell: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+fn merged(faces: &[Face], cell: f64) -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let mut known: BTreeMap<[i64; 3], u32> = BTreeMap::new();
     let mut corners = Vec::new();
     let mut triangles = Vec::new();
     for face in faces {
         let triangle = face.corners.map(|corner| {
-            let place = ((corner - low) / cell).to_array();
+            let place = (corner / cell).to_array();
             let next = corners.len() as u32;
             let number = *known.entry(place.map(|v| v.round() as i64)).or_insert(next);
             if number == next {
@@ -209,5 +180,43 @@ mod tests {
         let on_tube = |corner: &&DVec3| (radius(corner) - 0.01).abs() < 1e-9 && corner.z < -0.01;
         let kept = solid.corners.iter().filter(on_tube).count();
         assert!(kept >= 90, "{kept} of 96 corners of the bore's far rim");
+    }
+
+    #[test]
+    fn sharp_edges_stay_where_they_are_and_part_the_faces_that_meet_there() {
+        // A cube of 20 mm, each face in 20 x 20 squares.
+        let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+        let axes = [DVec3::X, DVec3::Y, DVec3::Z];
+        for (axis, side) in (0..3).flat_map(|axis| [(axis, 1.0), (axis, -1.0)]) {
+            let [out, along] = [side * axes[axis], axes[(axis + 1) % 3]];
+            let across = out.cross(along);
+            let first = vertices.len() as u32;
+            for (i, j) in (0..=20_u32).flat_map(|i| (0..=20_u32).map(move |j| (i, j))) {
+                let [u, v] = [i, j].map(|step| 1e-3 * f64::from(step) - 0.01);
+                vertices.push(0.01 * out + u * along + v * across);
+                if i < 20 && j < 20 {
+                    let at = |i: u32, j: u32| first + 21 * i + j;
+                    triangles.push([at(i, j), at(i + 1, j), at(i + 1, j + 1)]);
+                    triangles.push([at(i, j), at(i + 1, j + 1), at(i, j + 1)]);
+                }
+            }
+        }
+        let mut scene = ball(0.1);
+        scene.bodies[0].shapes[0].geometry = VisualShape::Mesh {
+            vertices,
+            triangles,
+        };
+        let solid = &solids(&scene, 0, 100)[0];
+        assert!(solid.triangles.len() <= 100 && solid.whole == 4800);
+        assert!((volume(solid) / 8e-6 - 1.0).abs() < 1e-9);
+        let normal = |[a, b, c]: [u32; 3]| {
+            let [a, b, c] = [a, b, c].map(|index| solid.corners[index as usize]);
+            (b - a).cross(c - a).normalize()
+        };
+        for corner in 0..solid.corners.len() as u32 {
+            let own = solid.triangles.iter().filter(|t| t.contains(&corner));
+            let normals: Vec<DVec3> = own.map(|triangle| normal(*triangle)).collect();
+            assert!(normals.iter().all(|n| n.dot(normals[0]) > 0.999));
+        }
     }
 }

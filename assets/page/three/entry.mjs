@@ -7,4 +7,3 @@ export { OrbitControls } from "three/addons/controls/OrbitControls.js";
 export { LineMaterial } from "three/addons/lines/LineMaterial.js";
 export { LineSegments2 } from "three/addons/lines/LineSegments2.js";
 export { LineSegmentsGeometry } from "three/addons/lines/LineSegmentsGeometry.js";
-export { toCreasedNormals } from "three/addons/utils/BufferGeometryUtils.js";

@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 
 mod chart;
 
+use super::packed;
 use super::{Block, Cell, Document, Panel, Section, Strip, Table, Tone};
 
 const STYLE: &str = include_str!("../../../assets/page/page.css");
@@ -76,7 +77,7 @@ pub fn html(page: &Document<'_>) -> String {
                 script { (PreEscaped(CHART_SCRIPT)) }
                 script { (PreEscaped(SCRIPT)) }
                 @if page.sections.iter().any(|section| in_space(&section.blocks)) {
-                    script { (PreEscaped(SPACE_LIBRARY)) }
+                    script #space-library type="application/gzip" { (PreEscaped(packed::gzip(SPACE_LIBRARY.as_bytes()))) }
                     script { (PreEscaped(SPACE_SCRIPT)) }
                 }
             }
