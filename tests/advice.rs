@@ -271,10 +271,10 @@ fn a_part_of_one_s_own_is_put_where_its_longest_edge_is_ridden_and_runs() {
     ];
     let outcome = bench.idc(&words, &[]);
     assert_eq!(outcome.code, 0, "{}", outcome.err);
-    let told: Value = serde_json::from_str(&outcome.out).unwrap();
+    let reported: Value = serde_json::from_str(&outcome.out).unwrap();
     assert!(
-        told["chosen"].as_str().unwrap().starts_with("edge "),
-        "{told}"
+        reported["chosen"].as_str().unwrap().starts_with("edge "),
+        "{reported}"
     );
     let words = [
         "run",

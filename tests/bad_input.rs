@@ -289,8 +289,8 @@ fn obstacles() {
     mesh(&bench, &[[A, B, C], [A, TOP, B], [B, TOP, C], [C, TOP, A]]);
     let outcome = bench.idc(&["check", "scenario.toml"], &[]);
     assert_eq!(outcome.code, 0, "{}", outcome.err);
-    let told = "thing.stl: mended: 4 faces, all wound inwards turned, at (";
-    assert!(outcome.out.contains(told), "{}", outcome.out);
+    let reported = "thing.stl: mended: 4 faces, all wound inwards turned, at (";
+    assert!(outcome.out.contains(reported), "{}", outcome.out);
 }
 
 #[test]
@@ -316,10 +316,15 @@ fn collision_shapes_of_a_robot() {
     }
     let outcome = bench.run();
     assert_eq!(outcome.code, 0, "{}", outcome.err);
-    let told = |file: &str| outcome.err.matches(file).count();
-    assert_eq!(told("there is no file ./none.stl"), 1, "{}", outcome.err);
+    let reported = |file: &str| outcome.err.matches(file).count();
+    assert_eq!(
+        reported("there is no file ./none.stl"),
+        1,
+        "{}",
+        outcome.err
+    );
     let said = "links with collision meshes that cannot be used have the shape that is drawn of them: shoulder, forearm";
-    assert_eq!(told(said), 1, "{}", outcome.err);
+    assert_eq!(reported(said), 1, "{}", outcome.err);
     let as_drawn = std::fs::read(bench.path("out/samples.parquet")).unwrap();
     let bench = Bench::new("plate_edge_ideal");
     assert_eq!(bench.run().code, 0);

@@ -98,10 +98,10 @@ fn a_wall_beside_the_arm_is_avoided_or_refused_by_name() {
     let error = refusal(wall);
     let names = meeting(&error);
     assert!(names.contains(&"wall".to_owned()), "{error}");
-    let told = error.to_string();
+    let reported = error.to_string();
     assert!(
-        told.contains("waypoint") && told.contains("mm deep"),
-        "{told}"
+        reported.contains("waypoint") && reported.contains("mm deep"),
+        "{reported}"
     );
 }
 

@@ -79,7 +79,7 @@ fn measured(
 
 /// Of each number of the effects whether its interval holds the truth, in a device with a draw of noise.
 fn held(device: &Device, seed: u64) -> Vec<(&'static str, bool)> {
-    let believed = plant_of(&device.rig);
+    let nominal = plant_of(&device.rig);
     let noise = device.rig.noise;
     let random = &mut ChaCha8Rng::seed_from_u64(seed);
     let recordings = device.recorded.iter();
@@ -94,17 +94,17 @@ fn held(device: &Device, seed: u64) -> Vec<(&'static str, bool)> {
     let free: Vec<Free> = effects
         .iter()
         .flat_map(|effect| {
-            let parameters = effect.parameters(&believed);
+            let parameters = effect.parameters(&nominal);
             let start: Vec<f64> = parameters
                 .iter()
-                .map(|p| p.quantity.get(&believed))
+                .map(|p| p.quantity.get(&nominal))
                 .collect();
-            free_of(effect, &believed, &start)
+            free_of(effect, &nominal, &start)
         })
         .collect();
     let fit = fit(
         &evidence,
-        (&believed, None),
+        (&nominal, None),
         (&free, &[]),
         FINEST,
         Limit::FULL,
@@ -122,7 +122,7 @@ fn held(device: &Device, seed: u64) -> Vec<(&'static str, bool)> {
     };
     assert!(found.left_out.is_some());
     let concealed = &device.concealed;
-    let numbers = estimates(&believed, &[found], &evidence).effects;
+    let numbers = estimates(&nominal, &[found], &evidence).effects;
     let numbers = numbers.iter().flat_map(|(_, numbers)| numbers);
     let truths = [
         concealed.force_gain,

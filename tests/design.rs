@@ -415,10 +415,10 @@ fn draws_at_the_chosen_design_are_the_same_on_any_number_of_threads() {
     assert_eq!(robustness["draws"].as_array().unwrap().len(), 12);
     assert_eq!(robustness["all_limits"]["kept"], 12);
     // A load moves the force, and with it the variation.
-    let told = &robustness["quantiles"][0];
+    let reported = &robustness["quantiles"][0];
     assert!(
-        told["percent_95"].as_f64() > told["percent_5"].as_f64(),
-        "{told}"
+        reported["percent_95"].as_f64() > reported["percent_5"].as_f64(),
+        "{reported}"
     );
     let page = String::from_utf8(first.0[2].clone()).unwrap();
     assert!(page.contains("Robustness") && page.contains("normal, mean 8, standard deviation 0.5"));

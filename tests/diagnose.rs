@@ -423,13 +423,13 @@ fn the_effect_that_explains_the_most_is_told_first_in_every_file() {
         let outcome = diagnose(&bench, &["case", "--out", "out", "--quiet"]);
         assert_eq!(outcome.code, 0, "{}", outcome.err);
         assert_eq!(names(&json(&bench.path("out/diagnosis.json"))), order);
-        for (file, spoken) in [
+        for (file, display_name) in [
             ("improved.toml", false),
             ("account.txt", false),
             ("report.html", true),
         ] {
             let text = std::fs::read_to_string(bench.path("out").join(file)).unwrap();
-            let place = |name: &str| match (file, spoken) {
+            let place = |name: &str| match (file, display_name) {
                 ("improved.toml", _) => text.find(&format!("name = \"{name}\"")),
                 (_, true) => text.find(&format!("<td>{}</td>", name.replace('_', " "))),
                 (_, false) => text.find(&format!("{name} (")),

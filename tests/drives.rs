@@ -180,14 +180,14 @@ fn a_device_heavier_than_the_arm_may_carry_is_refused_and_one_as_heavy_is_not() 
         panic!("5.9 kg carried 6 kg");
     };
     assert!(matches!(refused, CellError::Payload { .. }));
-    let told = refused.to_string();
+    let reported = refused.to_string();
     for part in [
         "carries 6 kg",
         "2 kg of housing",
         "4 kg of slide",
         "at most 5.9 kg (arm.payload_kg)",
     ] {
-        assert!(told.contains(part), "{part}: {told}");
+        assert!(reported.contains(part), "{part}: {reported}");
     }
     assert!(with(6.0).is_ok());
 }

@@ -89,11 +89,11 @@ fn the_page_of_a_part_has_the_numbers_of_its_list() {
             let id = curve["id"].as_str().unwrap();
             assert_eq!(line["id"], id);
             let (kind, number) = id.split_once('-').unwrap();
-            let told = curve["length_mm"].as_f64().unwrap();
+            let reported = curve["length_mm"].as_f64().unwrap();
             let points = floats(&line["points"]);
             // Outlines are drawn within their faces.
             if kind == "edge" {
-                assert!((length(&points) / told - 1.0).abs() < 1e-4, "{id}");
+                assert!((length(&points) / reported - 1.0).abs() < 1e-4, "{id}");
             }
             let fact = |name: &str| {
                 let facts = line["facts"].as_array().unwrap();
@@ -101,7 +101,10 @@ fn the_page_of_a_part_has_the_numbers_of_its_list() {
                 fact[1].as_str().unwrap().to_owned()
             };
             let shown: f64 = fact("length").trim_end_matches(" mm").parse().unwrap();
-            assert!((shown - told).abs() < 6e-4, "{id}: {shown} for {told}");
+            assert!(
+                (shown - reported).abs() < 6e-4,
+                "{id}: {shown} for {reported}"
+            );
             // All faces of both parts stand at right angles.
             assert_eq!(fact("angle between the faces"), "90.0°");
             for end in curve["angle_deg"].as_array().unwrap() {
@@ -133,8 +136,8 @@ fn an_inside_edge_is_told_and_has_no_lines_to_paste() {
     let inside = lines.iter().filter(|line| line["pale"] == true);
     let inside: Vec<_> = inside
         .map(|line| {
-            let told = ["remark", "lines"].map(|key| line[key].as_str().unwrap());
-            (line["view"].as_u64().unwrap(), told)
+            let reported = ["remark", "lines"].map(|key| line[key].as_str().unwrap());
+            (line["view"].as_u64().unwrap(), reported)
         })
         .collect();
     let remark = "An inside edge, cannot be ridden.";
@@ -237,8 +240,8 @@ fn small_flaws_are_mended_with_places_and_others_shown_on_the_page() {
     bench.write("turned.stl", stl(&turned));
     let outcome = bench.idc(&["edges", "turned.stl"], &[]);
     assert_eq!((outcome.code, outcome.err.as_str()), (0, ""));
-    let told = "note: mended: 1 face wound against its neighbours turned, at (40, ";
-    assert!(outcome.out.contains(told), "{}", outcome.out);
+    let reported = "note: mended: 1 face wound against its neighbours turned, at (40, ";
+    assert!(outcome.out.contains(reported), "{}", outcome.out);
     // Without the side at x = 40 mm.
     let open: Vec<_> = sound
         .iter()
@@ -356,7 +359,7 @@ fn a_page_goes_where_nothing_stands() {
     let words = ["edges", "part.stl", "--out", "page.html"];
     assert_eq!(bench.idc(&words, &[]).code, 0);
     let before = bench.contents();
-    for (words, told) in [
+    for (words, reported) in [
         (&words[..], "error: page.html is there already"),
         (
             &["edges", "part.stl", "--out", "part.stl", "--force"],
@@ -369,7 +372,7 @@ fn a_page_goes_where_nothing_stands() {
     ] {
         let outcome = bench.idc(words, &[]);
         assert_eq!((outcome.code, outcome.out.as_str()), (2, ""), "{words:?}");
-        outcome.only_line(told);
+        outcome.only_line(reported);
         assert!(before == bench.contents(), "{words:?}");
     }
 }

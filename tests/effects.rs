@@ -117,12 +117,12 @@ fn the_lines_of_every_page_are_those_of_a_file() {
     std::fs::create_dir_all(&near).unwrap();
     let bench = Bench::new("paper_step");
     for effect in kinds() {
-        let told = bench.idc(&["effects", name(effect), "--json"], &[]).out;
-        let told: serde_json::Value = serde_json::from_str(&told).unwrap();
-        let lines = told["lines"].as_array().unwrap().iter();
+        let reported = bench.idc(&["effects", name(effect), "--json"], &[]).out;
+        let reported: serde_json::Value = serde_json::from_str(&reported).unwrap();
+        let lines = reported["lines"].as_array().unwrap().iter();
         let lines: Vec<&str> = lines.map(|line| line.as_str().unwrap()).collect();
-        let whole = told["command"].as_str();
-        let shipped = match (whole, told["chain"].as_str()) {
+        let whole = reported["command"].as_str();
+        let shipped = match (whole, reported["chain"].as_str()) {
             (Some(command), _) => command.split(' ').nth(2).unwrap(),
             (None, Some("closed_chamber")) => "assets/rigs/chamber_leak.toml",
             (None, Some("driven_slide")) => "assets/rigs/emps.toml",
@@ -169,7 +169,7 @@ fn the_gallery_is_what_the_program_makes() {
         .collect();
     assert_eq!(existing, pictures);
     // The eye sees what each is about.
-    let mut told = 0;
+    let mut reported = 0;
     for line in made.out.lines() {
         let share: f64 = (line
             .split_once(": ")
@@ -177,7 +177,7 @@ fn the_gallery_is_what_the_program_makes() {
         .and_then(|(share, _)| share.parse().ok())
         .unwrap_or_else(|| panic!("{line}"));
         assert!(share >= 3.0, "{line}");
-        told += 1;
+        reported += 1;
     }
-    assert_eq!(told, pictures.len());
+    assert_eq!(reported, pictures.len());
 }

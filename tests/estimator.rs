@@ -189,14 +189,14 @@ fn devices_off_their_data_within_the_usual_tolerances_are_covered() {
 
 #[test]
 fn a_friction_believed_badly_wrong_is_not_covered() {
-    for believed in [0.0, 5.0, 20.0] {
+    for nominal in [0.0, 5.0, 20.0] {
         let mut scenario = scenario(0.5, FIRST_SEED + 200);
         let mut device = scenario.nominal.device.clone();
-        device.seal_friction.coulomb = believed;
-        device.seal_friction.static_force = believed;
+        device.seal_friction.coulomb = nominal;
+        device.seal_friction.static_force = nominal;
         scenario.estimator = Some(believing(&scenario, &device, Tolerances::NONE));
         let wrong = score(scenario);
-        println!("{believed} N: covers {:.2} %", 100.0 * wrong.coverage());
-        assert!(wrong.coverage() < 0.3, "{believed} N: {wrong:?}");
+        println!("{nominal} N: covers {:.2} %", 100.0 * wrong.coverage());
+        assert!(wrong.coverage() < 0.3, "{nominal} N: {wrong:?}");
     }
 }

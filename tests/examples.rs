@@ -13,9 +13,9 @@ fn program(name: &str) -> PathBuf {
 }
 
 fn header(source: &str) -> String {
-    let told = source.lines().map_while(|line| line.strip_prefix("//!"));
-    let told = told.map(|line| line.strip_prefix(' ').unwrap_or(line));
-    let block = told.skip_while(|line| *line != "```text").skip(1);
+    let reported = source.lines().map_while(|line| line.strip_prefix("//!"));
+    let reported = reported.map(|line| line.strip_prefix(' ').unwrap_or(line));
+    let block = reported.skip_while(|line| *line != "```text").skip(1);
     let block = block.take_while(|line| *line != "```");
     block.map(|line| format!("{line}\n")).collect()
 }

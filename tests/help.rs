@@ -211,10 +211,10 @@ fn every_example_of_the_help_runs_as_printed() {
             );
             // JSON is for programs.
             if !line.contains("--json") && !line.contains("schema") {
-                for told in [&output.stdout, &output.stderr] {
-                    let told = String::from_utf8_lossy(told);
-                    assert_eq!(odd_number(&told), None, "{line}\n{told}");
-                    assert!(!told.contains(" 1 cases"), "{line}\n{told}");
+                for reported in [&output.stdout, &output.stderr] {
+                    let reported = String::from_utf8_lossy(reported);
+                    assert_eq!(odd_number(&reported), None, "{line}\n{reported}");
+                    assert!(!reported.contains(" 1 cases"), "{line}\n{reported}");
                 }
             }
             run += 1;

@@ -281,7 +281,7 @@ fn circles(sources: &Sources) -> Vec<BTreeSet<String>> {
 }
 
 /// The imports within a circle, to be read.
-fn told(sources: &Sources, circle: &BTreeSet<String>) -> String {
+fn reported(sources: &Sources, circle: &BTreeSet<String>) -> String {
     let modules = Modules::new(sources);
     let edges = modules.edges();
     let line = |file: &String| {
@@ -300,7 +300,10 @@ fn told(sources: &Sources, circle: &BTreeSet<String>) -> String {
 fn no_files_import_one_another_in_a_circle() {
     let sources = sources();
     let found = circles(&sources);
-    let text: Vec<String> = found.iter().map(|circle| told(&sources, circle)).collect();
+    let text: Vec<String> = found
+        .iter()
+        .map(|circle| reported(&sources, circle))
+        .collect();
     assert!(found.is_empty(), "circles of imports:\n{}", text.join("\n"));
 }
 

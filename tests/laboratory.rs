@@ -2,7 +2,7 @@
 
 use idc_cell::device::DeviceParameters;
 use idc_cell::laboratory::{
-    Believed, Concealed, Conditions, EFFECTS, LaboratoryRig, Programme, Recipe, run,
+    Concealed, Conditions, EFFECTS, LaboratoryRig, NominalRig, Programme, Recipe, run,
 };
 use idc_cell::physics::end_cushioning::EndCushioning;
 use idc_cell::physics::gas::Gas;
@@ -80,9 +80,9 @@ const NOISE: [f64; 4] = [400.0, 2e-5, 0.8, 0.15];
 #[test]
 fn with_nothing_concealed_it_agrees_with_the_simulator() {
     for seed in 0..8 {
-        let believed = Believed::draw(seed);
-        let rig = believed.real(seed);
-        for programme in &believed.programmes(seed, 5.0) {
+        let nominal = NominalRig::draw(seed);
+        let rig = nominal.real(seed);
+        for programme in &nominal.programmes(seed, 5.0) {
             let ours = run(&rig, &Concealed::default(), programme).unwrap();
             let theirs = simulate(&plant_of(&rig), &inputs_of(programme)).readings;
             for channel in 0..4 {
@@ -106,9 +106,9 @@ fn with_nothing_concealed_it_agrees_with_the_simulator() {
 fn a_recording_that_begins_in_mid_motion_is_followed_after_half_a_second() {
     let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(5);
     for seed in 0..8 {
-        let believed = Believed::draw(seed);
-        let rig = believed.real(seed);
-        for mut programme in believed.programmes(seed, 5.0) {
+        let nominal = NominalRig::draw(seed);
+        let rig = nominal.real(seed);
+        for mut programme in nominal.programmes(seed, 5.0) {
             let begins = 0.9 + 0.13 * seed as f64;
             programme.times.retain(|time| *time >= begins);
             let ours = run(&rig, &Concealed::default(), &programme)

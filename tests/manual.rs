@@ -138,8 +138,8 @@ fn a_check_says_what_would_be_done() {
     // A bench has a sample at its start and one at its end: idc check counted one too few.
     let bench = Bench::new("paper_step");
     bench.run();
-    let told = &check("scenarios/paper_step.toml")["numbers"]["samples"];
-    assert_eq!(told.as_f64(), bench.summary()["samples"].as_f64());
+    let reported = &check("scenarios/paper_step.toml")["numbers"]["samples"];
+    assert_eq!(reported.as_f64(), bench.summary()["samples"].as_f64());
     for (file, kind) in [
         ("scenarios/paper_step.toml", "a bench to simulate"),
         ("scenarios/studies/device_design.toml", "a design study"),
@@ -148,8 +148,11 @@ fn a_check_says_what_would_be_done() {
         ("assets/proof/cases/case-03", "a case to diagnose"),
         ("models/device.toml", "a device model"),
     ] {
-        let told = check(file);
-        assert!(told["kind"].as_str().unwrap().starts_with(kind), "{told}");
+        let reported = check(file);
+        assert!(
+            reported["kind"].as_str().unwrap().starts_with(kind),
+            "{reported}"
+        );
     }
     for (file, says) in [
         ("weak_supply.toml", "400 N, which needs 2.31 bar"),
@@ -208,10 +211,10 @@ fn every_command_with_results_has_them_as_json() {
             (0, ""),
             "{arguments:?}"
         );
-        let told: Value = serde_json::from_str(&outcome.out).unwrap();
+        let reported: Value = serde_json::from_str(&outcome.out).unwrap();
         assert!(
-            key.is_empty() || !told[key].is_null(),
-            "{arguments:?}: {told}"
+            key.is_empty() || !reported[key].is_null(),
+            "{arguments:?}: {reported}"
         );
     }
     // All others have the flag, but those whose result is a text for another program.

@@ -74,9 +74,12 @@ fn results_that_stand_are_kept_without_force() {
         assert!(bench.path(file).is_file(), "{command}");
         let before = bench.contents();
         let again = bench.idc(&words, &[]);
-        let told = again.err.clone();
-        assert_eq!(again.code, 2, "{command}: {told}");
-        assert!(told.contains("--force") && told.contains("out"), "{told}");
+        let reported = again.err.clone();
+        assert_eq!(again.code, 2, "{command}: {reported}");
+        assert!(
+            reported.contains("--force") && reported.contains("out"),
+            "{reported}"
+        );
         assert!(before == bench.contents(), "{command} touched what stands");
         // What was there is replaced.
         bench.write(file, "stale");

@@ -503,9 +503,9 @@ fn rapier_and_the_plant_of_the_diagnosis_agree_on_a_leaned_tool_with_seals() {
         ],
     );
     let (mut stroke, mut force) = (Vec::new(), Vec::new());
-    for [time, believed, force_n, measured] in compared {
+    for [time, nominal, force_n, measured] in compared {
         let near = truth.partition_point(|row| row[0] < time - 1e-6);
-        stroke.push((believed - truth[near][1]).abs() / 4e-5);
+        stroke.push((nominal - truth[near][1]).abs() / 4e-5);
         if measured.is_finite() {
             force.push((force_n - measured) / 0.8);
         }

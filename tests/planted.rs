@@ -52,7 +52,7 @@ fn an_effect_below_the_noise_is_not_named() {
 fn the_smallest_effect_that_shows_is_that() {
     let (nothing, _) = diagnosed("nothing", 78, &[]);
     assert_eq!(named(&nothing), [""; 0]);
-    let told = |effect: &str, name: &str| {
+    let reported = |effect: &str, name: &str| {
         let mut all = nothing.details.detectable.iter();
         let smallest = all.find(|smallest| smallest.effect == effect).unwrap();
         let mut numbers = smallest.parameters.iter();
@@ -68,11 +68,11 @@ fn the_smallest_effect_that_shows_is_that() {
     ] {
         let of_size = |size: f64| diagnosed(effect, 78, &[(effect, size)]);
         let (_, sealed) = of_size(0.1);
-        let size = 0.1 * told(effect, name) / planted(&sealed, name);
+        let size = 0.1 * reported(effect, name) / planted(&sealed, name);
         let (twice, sealed) = of_size(2.0 * size);
         println!(
             "{effect}: {:.2e} would show, {:.2e} planted",
-            told(effect, name),
+            reported(effect, name),
             planted(&sealed, name)
         );
         assert_eq!(named(&twice).len(), 1, "{effect}");
@@ -99,8 +99,8 @@ fn a_device_without_an_accelerometer_is_diagnosed_by_its_other_sensors() {
         let place = |part: &str| room.path().join(part);
         write_case(&case, &place("case"), None).unwrap();
         let rig = std::fs::read_to_string(place("case/rig.toml")).unwrap();
-        let told = |line: &&str| !line.starts_with("acceleration_m_per_s2");
-        let rig: Vec<&str> = rig.lines().filter(told).collect();
+        let reported = |line: &&str| !line.starts_with("acceleration_m_per_s2");
+        let rig: Vec<&str> = rig.lines().filter(reported).collect();
         std::fs::write(place("case/rig.toml"), rig.join("\n") + "\n").unwrap();
         if !keeps_column {
             for name in ["stairs", "ride", "cycle"] {

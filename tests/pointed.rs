@@ -95,8 +95,8 @@ fn an_error_is_json_where_json_is_asked_for() {
     bench.replace("scenario.toml", "force_n = 150", "force_n = -150");
     let outcome = bench.idc(&["run", "scenario.toml", "--json"], &[]);
     assert_eq!((outcome.code, outcome.out.as_str()), (2, ""));
-    let told: serde_json::Value = serde_json::from_str(&outcome.err).unwrap();
-    let error = &told["error"];
+    let reported: serde_json::Value = serde_json::from_str(&outcome.err).unwrap();
+    let error = &reported["error"];
     assert_eq!((&error["line"], &error["column"]), (&28.into(), &1.into()));
     assert_eq!(
         (&error["file"], &error["exit_code"]),
@@ -106,8 +106,8 @@ fn an_error_is_json_where_json_is_asked_for() {
     assert!(message.contains("expected 0.1 to 5000 N"), "{message}");
     // Without a place in a file.
     let outcome = bench.idc(&["run", "nowhere.toml", "--json"], &[]);
-    let told: serde_json::Value = serde_json::from_str(&outcome.err).unwrap();
-    assert_eq!(told["error"]["file"], serde_json::Value::Null);
+    let reported: serde_json::Value = serde_json::from_str(&outcome.err).unwrap();
+    assert_eq!(reported["error"]["file"], serde_json::Value::Null);
 }
 
 #[test]

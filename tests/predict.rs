@@ -168,7 +168,7 @@ fn a_believed_rig_comes_to_rest_on_the_balance_of_its_forces() {
 fn an_improved_rig_predicts_with_its_effects() {
     let bench = folder();
     predict(&bench);
-    let believed = columns(&bench)[499][3];
+    let nominal = columns(&bench)[499][3];
     bench.write(
         "rig.toml",
         RIG.to_owned() + "\n[effect.axial_force_offset]\nforce_n = { value = -20, low = -21, high = -19 }\n[effect.force_sensor_bias_drift]\nbias_n = 5\ndrift_n_per_s = 0\n",
@@ -176,8 +176,8 @@ fn an_improved_rig_predicts_with_its_effects() {
     assert_eq!(predict(&bench).code, 0);
     let improved = columns(&bench)[499][3];
     assert!(
-        (improved - believed + 15.0).abs() < 0.05,
-        "{improved} {believed}"
+        (improved - nominal + 15.0).abs() < 0.05,
+        "{improved} {nominal}"
     );
 }
 

@@ -38,8 +38,8 @@ impl Outcome {
             let looking = line.starts_with("looking for what would make it possible");
             looking || rest.starts_with('|') || rest.starts_with("--> ")
         };
-        let told: Vec<&str> = self.err.lines().filter(|line| !shown(line)).collect();
-        told.join("\n")
+        let reported: Vec<&str> = self.err.lines().filter(|line| !shown(line)).collect();
+        reported.join("\n")
     }
 }
 

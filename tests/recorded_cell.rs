@@ -342,8 +342,8 @@ fn surface(
     joints: &[Vec<f64>],
     plant: &PlantParameters,
 ) -> Vec<f64> {
-    let believed = cell.plant().cell.servo_bandwidth;
-    let trajectory = cell.trajectory(&made.time, &made.path, joints, believed);
+    let nominal = cell.plant().cell.servo_bandwidth;
+    let trajectory = cell.trajectory(&made.time, &made.path, joints, nominal);
     trajectory.contact_kinematics(&plant.cell).surface()
 }
 

@@ -145,8 +145,8 @@ fn exponent_and_wear_are_named_and_the_improved_law_predicts_another_table() {
             &[],
         );
         assert_eq!(outcome.code, 0, "{}", outcome.err);
-        let told: Value = serde_json::from_str(&outcome.out).unwrap();
-        told["rms_of_log_volume"].as_f64().unwrap()
+        let reported: Value = serde_json::from_str(&outcome.out).unwrap();
+        reported["rms_of_log_volume"].as_f64().unwrap()
     };
     let improved = off("found/improved.toml");
     assert!(improved < 0.075, "{improved}");

@@ -43,8 +43,8 @@ fn the_page_of_a_diagnosis_says_what_is_missing_and_comes_again_from_its_files()
     }
     let outcome = bench.idc(&["report", "found", "--json"], &[]);
     assert_eq!(outcome.code, 0, "{}", outcome.err);
-    let told: serde_json::Value = serde_json::from_str(&outcome.out).unwrap();
-    assert_eq!(told["kind"], "diagnosis");
+    let reported: serde_json::Value = serde_json::from_str(&outcome.out).unwrap();
+    assert_eq!(reported["kind"], "diagnosis");
     assert!(fs::read(bench.path("found/report.html")).unwrap() == page);
     // Elsewhere, and not over what stands there.
     let words = ["report", "found", "--out", "mine.html"];
@@ -106,13 +106,13 @@ fn a_run_says_which_of_its_numbers_rest_on_judged_values() {
     ];
     assert_eq!(bench.idc(&words, &[]).code, 0);
     let summary = bench.summary();
-    let told = summary["judged"].as_array().unwrap();
+    let reported = summary["judged"].as_array().unwrap();
     let key = |value: &Value| value["key"].as_str().unwrap().to_owned();
     let rows = fs::read_to_string(project("scenarios/README.md")).unwrap();
     let model = fs::read_to_string(project("models/device.toml")).unwrap();
     let model: toml::Table = toml::from_str(&model).unwrap();
     let of_model = model["judged"].as_array().unwrap();
-    for value in told {
+    for value in reported {
         let key = key(value);
         match key.strip_prefix("device.") {
             Some(own) => assert!(of_model.contains(&toml::Value::from(own)), "{key}"),
@@ -124,8 +124,8 @@ fn a_run_says_which_of_its_numbers_rest_on_judged_values() {
         }
     }
     let page = fs::read_to_string(bench.path("out/report.html")).unwrap();
-    let (_, told_there) = page.split_once("These numbers rest on values").unwrap();
-    let sentence = told_there.split("measure your own").next().unwrap();
+    let (_, reported_there) = page.split_once("These numbers rest on values").unwrap();
+    let sentence = reported_there.split("measure your own").next().unwrap();
     for expected in [
         "leg of the chamfer and burr that is left on removal.coefficient_mm3_per_j, removal.contact_length_mm (default) and workpiece.burr.root_mm",
         "spindle torque and power on removal.friction_coefficient (default) and removal.specific_energy_j_per_mm3",
@@ -135,7 +135,7 @@ fn a_run_says_which_of_its_numbers_rest_on_judged_values() {
         assert!(sentence.contains(expected), "{sentence}");
     }
     // What the scenario gives is no longer the model's, and what switches something off decides nothing.
-    let given = |key_: &str| told.iter().any(|value| key(value) == key_);
+    let given = |key_: &str| reported.iter().any(|value| key(value) == key_);
     assert!(given("device.seal_coulomb_force_n") && !given("device.axial_load_n"));
     assert!(!given("removal.wear_work_kj"));
     bench.replace(
@@ -147,7 +147,7 @@ fn a_run_says_which_of_its_numbers_rest_on_judged_values() {
     assert_eq!(bench.idc(&words, &[]).code, 0);
     let summary = bench.summary();
     let again = summary["judged"].as_array().unwrap();
-    assert_eq!(again.len() + 1, told.len());
+    assert_eq!(again.len() + 1, reported.len());
     assert!(
         !again
             .iter()
@@ -208,8 +208,8 @@ fn a_comparison_has_changes_against_the_first_and_refuses_what_cannot_be_compare
     }
     let outcome = bench.idc(&["compare", "one", "other", "--json"], &[]);
     assert_eq!(outcome.code, 0, "{}", outcome.err);
-    let told: serde_json::Value = serde_json::from_str(&outcome.out).unwrap();
-    let numbers = told["numbers"].as_array().unwrap();
+    let reported: serde_json::Value = serde_json::from_str(&outcome.out).unwrap();
+    let numbers = reported["numbers"].as_array().unwrap();
     let mean = numbers.iter().find(|n| n["key"] == "force_mean_n").unwrap();
     let [one, other] = [0, 1].map(|i| mean["values"][i].as_f64().unwrap());
     // The paper's force is in proportion to the gauge pressure.
@@ -235,7 +235,7 @@ fn what_is_read_is_not_written_and_what_is_refused_leaves_nothing() {
     let bench = Bench::new("paper_step");
     assert_eq!(bench.run().code, 0);
     let before = bench.contents();
-    for (words, told) in [
+    for (words, reported) in [
         (
             vec!["report", "out", "--out", "out/summary.json", "--force"],
             "--out is out/summary.json, which is read here",
@@ -270,7 +270,7 @@ fn what_is_read_is_not_written_and_what_is_refused_leaves_nothing() {
     ] {
         let outcome = bench.idc(&words, &[]);
         assert_eq!(outcome.code, 2, "{words:?}: {}", outcome.err);
-        assert!(outcome.err.contains(told), "{words:?}: {}", outcome.err);
+        assert!(outcome.err.contains(reported), "{words:?}: {}", outcome.err);
         assert!(before == bench.contents(), "{words:?}");
         assert!(!bench.path("new").exists(), "{words:?}");
     }
@@ -290,19 +290,19 @@ fn names_that_are_no_text_are_told_as_far_as_they_are() {
         .current_dir(bench.path(""))
         .status();
     assert!(run.unwrap().success());
-    let told = std::process::Command::new(env!("CARGO_BIN_EXE_idc"))
+    let reported = std::process::Command::new(env!("CARGO_BIN_EXE_idc"))
         .args(["report", "--json"])
         .arg(folder)
         .current_dir(bench.path(""))
         .output()
         .unwrap();
     assert!(
-        told.status.success(),
+        reported.status.success(),
         "{}",
-        String::from_utf8_lossy(&told.stderr)
+        String::from_utf8_lossy(&reported.stderr)
     );
-    let told: serde_json::Value = serde_json::from_slice(&told.stdout).unwrap();
-    assert_eq!(told["file"], "odd\u{fffd}/report.html");
+    let reported: serde_json::Value = serde_json::from_slice(&reported.stdout).unwrap();
+    assert_eq!(reported["file"], "odd\u{fffd}/report.html");
 }
 
 /// Rows of the tables of a page, cell by cell.
@@ -336,7 +336,7 @@ fn tell_apart(value: &mut Value, next: &mut f64) {
 }
 
 /// A page made anew of a run whose results are all different, and the results.
-fn told_apart(scenario: &str) -> (String, Value) {
+fn distinguishable(scenario: &str) -> (String, Value) {
     let bench = Bench::new(scenario);
     let words = ["run", "scenario.toml", "--out", "out", "--quiet"];
     assert!(bench.idc(&words, &[]).code < 2);
@@ -354,7 +354,7 @@ fn told_apart(scenario: &str) -> (String, Value) {
 #[test]
 fn each_number_on_the_page_of_a_run_is_that_of_its_name() {
     for scenario in ["plate_edge", "paper_step"] {
-        let (page, summary) = told_apart(scenario);
+        let (page, summary) = distinguishable(scenario);
         let rows = rows(&page);
         let by_key = |key: &str| rows.iter().find(|row| row.last() == Some(&key));
         let mut seen = 0;
@@ -400,7 +400,7 @@ fn each_number_on_the_page_of_a_run_is_that_of_its_name() {
 // Catches: the same in the table of a bench's commands, whose columns have names of their own.
 #[test]
 fn each_number_of_a_command_is_that_of_its_column() {
-    let (page, summary) = told_apart("paper_stairstep");
+    let (page, summary) = distinguishable("paper_stairstep");
     let table = page.split("Steady values of each command").nth(1).unwrap();
     let table = table.split("</table>").next().unwrap();
     let heading = table.split("scope=\"col\">").skip(1);

@@ -39,7 +39,7 @@ fn area() -> f64 {
 }
 
 /// The numbers of a claim as they stand in a comment, each `{}` of it one.
-fn told(path: &str, claim: &str) -> Vec<String> {
+fn reported(path: &str, claim: &str) -> Vec<String> {
     let (comments, _) = read(path);
     let mut rest = "";
     let mut found = Vec::new();
@@ -66,9 +66,9 @@ fn told(path: &str, claim: &str) -> Vec<String> {
 
 /// Each number of a claim is the value worked out, to its last digit.
 fn agrees(path: &str, claim: &str, values: &[f64]) {
-    let told = told(path, claim);
-    assert_eq!(told.len(), values.len(), "{path}: {claim}");
-    for (text, value) in told.iter().zip(values) {
+    let reported = reported(path, claim);
+    assert_eq!(reported.len(), values.len(), "{path}: {claim}");
+    for (text, value) in reported.iter().zip(values) {
         let decimals = text.split_once('.').map_or(0, |(_, end)| end.len());
         let number: f64 = text.parse().unwrap();
         let half = 0.5 * 10f64.powi(-(decimals as i32)) + 1e-9;

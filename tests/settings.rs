@@ -342,8 +342,8 @@ fn an_interrupted_command_keeps_what_is_whole_and_says_so() {
     signal(&child, "-INT");
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.signal(), Some(2), "130 in a shell");
-    let told = String::from_utf8(output.stderr).unwrap();
-    let line = told
+    let reported = String::from_utf8(output.stderr).unwrap();
+    let line = reported
         .lines()
         .find(|line| line.starts_with("interrupted: "))
         .unwrap();

@@ -500,11 +500,11 @@ fn suggested_commands_run_whatever_the_folder_is_called() {
         .lines()
         .find_map(|line| line.strip_prefix("next: idc "))
         .unwrap();
-    let told = Command::new("sh")
+    let reported = Command::new("sh")
         .args(["-c", &format!("printf '%s\\n' {next}")])
         .output()
         .unwrap();
-    let words = String::from_utf8(told.stdout).unwrap();
+    let words = String::from_utf8(reported.stdout).unwrap();
     assert_eq!(words.lines().collect::<Vec<_>>(), ["run", &file]);
 }
 

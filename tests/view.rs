@@ -246,13 +246,13 @@ fn recordings_are_served_with_their_viewer_on_loopback_alone() {
         .stdout(Stdio::piped())
         .spawn();
     let mut running = Running(child.unwrap());
-    let mut told = String::new();
+    let mut reported = String::new();
     let mut lines = BufReader::new(running.0.stdout.take().unwrap());
-    while !told.contains("\n}") {
-        assert_ne!(lines.read_line(&mut told).unwrap(), 0, "{told}");
+    while !reported.contains("\n}") {
+        assert_ne!(lines.read_line(&mut reported).unwrap(), 0, "{reported}");
     }
-    let told: serde_json::Value = serde_json::from_str(&told).unwrap();
-    let address = told["address"].as_str().unwrap();
+    let reported: serde_json::Value = serde_json::from_str(&reported).unwrap();
+    let address = reported["address"].as_str().unwrap();
     assert!(address.starts_with("http://127.0.0.1:"), "{address}");
     let (head, _) = fetch(address, "/", None);
     let start = head

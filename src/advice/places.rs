@@ -336,12 +336,12 @@ fn edge_towards_robot(setup: &Setup, outward: DVec3) -> Vec<DQuat> {
 
 /// The part believed where it really is, as if it had been measured.
 pub(super) fn located(trial: &Trial<'_>, setup: &Setup) -> Option<Remedy> {
-    let believed = setup.scenario.workpiece.world_from_part;
+    let nominal = setup.scenario.workpiece.world_from_part;
     let edge = &setup.part.edge;
-    let bisector = believed.rotation * edge.at(0.5 * edge.length).bisector;
+    let bisector = nominal.rotation * edge.at(0.5 * edge.length).bisector;
     let shift = setup.scenario.workpiece.misplacement.shift;
-    let place = believed.translation + bisector * shift;
-    let mut edits = pose_edits(DPose3::from_parts(place, believed.rotation), false);
+    let place = nominal.translation + bisector * shift;
+    let mut edits = pose_edits(DPose3::from_parts(place, nominal.rotation), false);
     edits.push(KeyValue::number("workpiece.misplacement.shift_mm", 0.0));
     let friction = held_back(&setup.scenario);
     trial.passes(&edits, friction).then(|| Remedy {

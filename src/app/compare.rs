@@ -14,7 +14,7 @@ use super::output::say;
 use super::report::{RunResult, read_json, read_run};
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::answer::estimate::Estimate;
-use crate::diagnosis::answer::words::{capital, of_column, percent, spoken};
+use crate::diagnosis::answer::words::{capital, display_name, of_column, percent};
 use crate::document::html;
 use crate::metrics::Label;
 use crate::recording::atomic::write_text;
@@ -208,10 +208,10 @@ fn of_diagnoses(names: Vec<String>, answers: &[Answer]) -> Compared {
             );
             let numbers = effect.parameters.iter().filter(|(name, _)| name != JOINT);
             for (name, estimate) in numbers {
-                let (spoken, unit, factor) = spoken(name);
+                let (display_name, unit, factor) = display_name(name);
                 let key = format!("{own}.{name}");
                 add(
-                    format!("{words}: {spoken}"),
+                    format!("{words}: {display_name}"),
                     unit,
                     factor,
                     place,
@@ -221,9 +221,9 @@ fn of_diagnoses(names: Vec<String>, answers: &[Answer]) -> Compared {
             }
         }
         for error in &answer.details.prediction {
-            let (spoken, unit, factor) = of_column(&error.channel);
+            let (display_name, unit, factor) = of_column(&error.channel);
             let key = format!("prediction.{}", error.channel);
-            let name = format!("error of {spoken}, not fitted to");
+            let name = format!("error of {display_name}, not fitted to");
             add(name, unit, factor, place, key, error.after);
         }
     }

@@ -19,10 +19,10 @@ use super::error::{AppError, ExitCode};
 use crate::advice::Advice;
 use crate::cell::CellError;
 use crate::design::DesignError;
-use crate::keys::error::Place;
+use crate::keys::error::Location;
 use crate::metrics::MetricsError;
 use crate::run::RunError;
-use crate::scenario::place_of;
+use crate::scenario::location_of;
 
 /// The word that an error begins with.
 const WORD: Style = AnsiColor::BrightRed.on_default().bold();
@@ -39,27 +39,26 @@ pub fn wants_json(matches: &clap::ArgMatches) -> bool {
 /// Tells an error on standard error.
 pub fn complain(error: &AppError, json: bool) {
     let code = error.exit_code();
-    let place = place(error);
+    let location = location(error);
     if json {
-        eprintln!("{}", as_json(error, code, place.as_ref()));
+        eprintln!("{}", as_json(error, code, location.as_ref()));
         return;
     }
     eprintln!("{WORD}error{WORD:#}: {error}");
-    if let Some(excerpt) = place.as_ref().and_then(excerpt) {
+    if let Some(excerpt) = location.as_ref().and_then(excerpt) {
         eprintln!("{excerpt}");
     }
 }
 
 /// Where in a file the error is.
-fn place(error: &AppError) -> Option<Place> {
+fn location(error: &AppError) -> Option<Location> {
     match error {
-        AppError::Advised { source, .. } => place(source),
-        AppError::Run(error) => place_of_run(error),
+        AppError::Advised { source, .. } => location(source),
+        AppError::Run(error) => location_of_run(error),
         AppError::Design(error) => match &**error {
-            DesignError::File(error) => error.place().cloned(),
-            DesignError::Variable { place, .. } | DesignError::UnknownMetric { place, .. } => {
-                Some(place.clone())
-            }
+            DesignError::File(error) => error.location().cloned(),
+            DesignError::Variable { location, .. }
+            | DesignError::UnknownMetric { location, .. } => Some(location.clone()),
             _ => None,
         },
         _ => None,
@@ -67,11 +66,11 @@ fn place(error: &AppError) -> Option<Place> {
 }
 
 /// The same of a scenario, its run or its numbers.
-fn place_of_run(error: &RunError) -> Option<Place> {
-    let of_key = |file: &Path, key: &str| place_of(file, key);
+fn location_of_run(error: &RunError) -> Option<Location> {
+    let of_key = |file: &Path, key: &str| location_of(file, key);
     let error = match error {
         RunError::Scenario(error) | RunError::Cell(CellError::Scenario(error)) => {
-            return error.place().cloned();
+            return error.location().cloned();
         }
         RunError::Metrics {
             file,
@@ -102,10 +101,10 @@ fn place_of_run(error: &RunError) -> Option<Place> {
 }
 
 /// The line with carets below what is meant.
-fn excerpt(place: &Place) -> Option<String> {
-    let (line, _) = place.position?;
-    let excerpt = place.excerpt.as_ref()?;
-    let file = place.file.display().to_string();
+fn excerpt(location: &Location) -> Option<String> {
+    let (line, _) = location.position?;
+    let excerpt = location.excerpt.as_ref()?;
+    let file = location.file.display().to_string();
     let snippet = Snippet::source(&excerpt.line)
         .line_start(line as usize)
         .path(file)
@@ -125,20 +124,20 @@ fn advice_of(error: &AppError) -> Option<&Advice> {
 }
 
 /// One line: {"error": {"message", "exit_code"}}, "file", "line", "column" where it is in a file, and "remedies" of a job: what each sets.
-fn as_json(error: &AppError, code: ExitCode, place: Option<&Place>) -> serde_json::Value {
-    let mut told = serde_json::json!({
+fn as_json(error: &AppError, code: ExitCode, location: Option<&Location>) -> serde_json::Value {
+    let mut message = serde_json::json!({
         "message": error.to_string(),
         "exit_code": code as u8,
     });
-    if let Some(place) = place {
-        told["file"] = place.file.display().to_string().into();
-        if let Some((line, column)) = place.position {
-            told["line"] = line.into();
-            told["column"] = column.into();
+    if let Some(location) = location {
+        message["file"] = location.file.display().to_string().into();
+        if let Some((line, column)) = location.position {
+            message["line"] = line.into();
+            message["column"] = column.into();
         }
     }
     if let Some(advice) = advice_of(error) {
-        told["remedies"] = as_json_list(advice);
+        message["remedies"] = as_json_list(advice);
     }
-    serde_json::json!({ "error": told })
+    serde_json::json!({ "error": message })
 }

@@ -66,9 +66,9 @@ pub(super) struct EffectsArguments {
 pub(super) fn run(arguments: &EffectsArguments) -> Result<ExitCode, AppError> {
     let policy = OverwritePolicy::of(arguments.force);
     if let Some(folder) = &arguments.gallery {
-        let told = gallery::write(folder, policy)?;
+        let summary = gallery::write(folder, policy)?;
         if !arguments.quiet {
-            say(&told)?;
+            say(&summary)?;
         }
         return Ok(ExitCode::Done);
     }

@@ -7,7 +7,7 @@ use clap::Args;
 use super::error::AppError;
 use super::interrupt::Interruptible;
 use super::progress;
-use crate::tasks::{Dask, Engine, Plan, Store, Task, TaskError, Told, dask, local};
+use crate::tasks::{Dask, Engine, Plan, Store, Task, TaskError, TaskMessage, dask, local};
 
 /// The plan of a sweep or a fleet, in its folder.
 pub(super) const PLAN: &str = "plan.jsonl";
@@ -58,22 +58,22 @@ impl EngineArguments {
         let bar = progress::tasks(count, tasks.word, tasks.quiet);
         let out = plan.parent().unwrap_or(Path::new("."));
         let interruptible = Interruptible::of_many(count, tasks.are, out);
-        let told = |told: Told| match told {
-            Told::Done(done) => {
+        let report = |report: TaskMessage| match report {
+            TaskMessage::Done(done) => {
                 interruptible.at(done);
                 bar.set_position(done as u64);
             }
-            Told::Words(words) if tasks.quiet => drop(words),
-            Told::Words(words) if bar.is_hidden() => eprintln!("{words}"),
-            Told::Words(words) => bar.println(words),
+            TaskMessage::Words(words) if tasks.quiet => drop(words),
+            TaskMessage::Words(words) if bar.is_hidden() => eprintln!("{words}"),
+            TaskMessage::Words(words) => bar.println(words),
         };
         let done = match &self.engine {
             Engine::Local => {
                 let processors = || std::thread::available_parallelism().map_or(1, usize::from);
                 let jobs = self.jobs.map_or_else(processors, usize::from);
-                local(opened, &store, jobs, tasks.work, &told)
+                local(opened, &store, jobs, tasks.work, &report)
             }
-            engine => dask(&self.dask(engine)?, &full(plan)?, count, &told),
+            engine => dask(&self.dask(engine)?, &full(plan)?, count, &report),
         };
         bar.finish_and_clear();
         Ok(done?)

@@ -1,7 +1,7 @@
 //! `idc import`: logs of a real device made into recordings, and what was understood of them.
 
 mod json;
-mod told;
+mod summary;
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -20,7 +20,7 @@ use crate::import::{ImportMap, Imported, LogNote, import, load_map};
 use crate::recording::csv::write_recording;
 use crate::recording::gaps::parts;
 use crate::recording::parquet::write_parquet;
-use told::{Copies, Job, name};
+use summary::{Copies, Job, name};
 
 #[derive(Debug, Args)]
 pub(super) struct ImportArguments {
@@ -216,7 +216,7 @@ fn provenance(imported: &Imported, map: &ImportMap) -> BTreeMap<String, String> 
 fn text(map: &ImportMap, jobs: &[Job], copies: &[Copies]) -> String {
     let mut text = String::new();
     for job in jobs {
-        text += &told::described(&job.imported, map);
+        text += &summary::described(&job.imported, map);
     }
     for Copies { one, other, share } in copies {
         let _ = writeln!(

@@ -26,11 +26,11 @@ impl Interruptible {
 
     /// One of which nothing is kept before its end.
     pub(super) fn of_one(what: &str, out: &Path) -> Self {
-        let told = format!(
+        let message = format!(
             "nothing of this {what} is kept in {}; the same command begins it anew",
             out.display()
         );
-        Self::new(move |_| told.clone())
+        Self::new(move |_| message.clone())
     }
 
     /// One of many parts, each kept once it is done, that goes on with --resume; `are` says what parts are when they are done.
@@ -83,7 +83,7 @@ pub fn listen(json: bool) {
         if let Some(signal) = signals.forever().next() {
             // In this order: what is counted as done is in its place.
             crate::recording::atomic::abandon();
-            told(json, 128 + signal);
+            report(json, 128 + signal);
             drop(signal_hook::low_level::emulate_default_handler(signal));
         }
     });
@@ -94,7 +94,7 @@ pub fn listen(json: bool) {
 pub fn listen(_json: bool) {}
 
 #[cfg(unix)]
-fn told(json: bool, code: i32) {
+fn report(json: bool, code: i32) {
     use std::io::{IsTerminal as _, Write as _};
     let tell = TELL.lock().unwrap_or_else(PoisonError::into_inner);
     let Some(text) = tell.as_ref().map(|tell| tell()) else {

@@ -201,7 +201,7 @@ pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
         (Some(_), Some(log)) => format!("idc import {} {}", word(&file), word(log)),
         _ => kind.next(&file),
     };
-    told_written(
+    report_written(
         arguments,
         (drafted.as_ref(), &of_arm, &chosen),
         &paths,
@@ -211,7 +211,7 @@ pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
 }
 
 /// Prints what was written, and what was found of logs or of an arm.
-fn told_written(
+fn report_written(
     arguments: &NewArguments,
     (drafted, of_arm, chosen): (Option<&Draft>, &str, &str),
     paths: &[String],
@@ -233,10 +233,10 @@ fn told_written(
         }
         say(&format!("{document:#}\n"))?;
     } else if !arguments.quiet {
-        let looked = drafted.map_or(String::new(), told);
+        let looked = drafted.map_or(String::new(), summary);
         let looked = match of_arm {
             "" => looked,
-            told => format!("{looked}arm: {told}\n"),
+            summary => format!("{looked}arm: {summary}\n"),
         };
         let chosen = match chosen {
             "" => String::new(),
@@ -251,7 +251,7 @@ fn told_written(
 }
 
 /// Quantities found in logs, and those asked for, for people.
-fn told(draft: &Draft) -> String {
+fn summary(draft: &Draft) -> String {
     let wide = draft.found.iter().map(|(quantity, _)| quantity.len());
     let wide = wide.max().unwrap_or(0);
     let found = draft.found.iter();

@@ -239,11 +239,11 @@ fn text(arguments: &PlaceArguments, tried: &[TriedPlace]) -> String {
         .collect();
     hindered.sort_unstable_by_key(|(count, _)| std::cmp::Reverse(*count));
     if !hindered.is_empty() {
-        let told: Vec<_> = hindered
+        let reasons: Vec<_> = hindered
             .iter()
             .map(|(count, name)| format!("{name} {count}"))
             .collect();
-        let _ = writeln!(text, "not possible for: {}", told.join(", "));
+        let _ = writeln!(text, "not possible for: {}", reasons.join(", "));
     }
     if let Some((position, possible)) = best.first() {
         let [x, y, z] = position.to_array().map(shown);

@@ -70,8 +70,8 @@ pub(super) fn run(arguments: &TaskArguments) -> Result<ExitCode, AppError> {
     let kind = plan.head.plan.clone();
     if store.exists(id) {
         return match kind.as_str() {
-            fleet::KIND => fleet::told(&store, id),
-            _ => vary::told(&store, id),
+            fleet::KIND => fleet::report_result(&store, id),
+            _ => vary::report_result(&store, id),
         };
     }
     let file = arguments.plan.display().to_string();
@@ -80,11 +80,11 @@ pub(super) fn run(arguments: &TaskArguments) -> Result<ExitCode, AppError> {
     match kind.as_str() {
         vary::KIND => {
             vary::Worker::new(&plan)?.perform(&task, &store)?;
-            vary::told(&store, id)
+            vary::report_result(&store, id)
         }
         fleet::KIND => {
             fleet::Worker::new(&plan)?.perform(&task, &store)?;
-            fleet::told(&store, id)
+            fleet::report_result(&store, id)
         }
         other => Err(TaskError::NoPlan {
             file,

@@ -59,7 +59,7 @@ pub(super) struct ViewArguments {
 
 /// The document of `--json`.
 #[derive(Serialize)]
-struct Place<'a> {
+struct ViewAddress<'a> {
     viewer: &'static str,
     address: Option<&'a str>,
     program: Option<String>,
@@ -172,7 +172,7 @@ fn say_place(
     address: Option<&str>,
     viewer: Option<&NativeViewer>,
 ) -> Result<(), AppError> {
-    let place = Place {
+    let address = ViewAddress {
         viewer: if viewer.is_some() { "native" } else { "web" },
         address,
         program: viewer.map(|viewer| viewer.program().display().to_string()),
@@ -181,5 +181,5 @@ fn say_place(
             .map(|file| file.display().to_string())
             .collect(),
     };
-    say(&format!("{}\n", serde_json::to_string_pretty(&place)?))
+    say(&format!("{}\n", serde_json::to_string_pretty(&address)?))
 }

@@ -22,7 +22,7 @@ pub(super) fn arm_prediction(
     let error = |channel: String, before: f64, after: f64, noise: Option<f64>| PredictionError {
         recording: name.to_owned(),
         channel,
-        believed: before,
+        nominal: before,
         before,
         after,
         noise,
@@ -52,7 +52,7 @@ pub(super) fn arm_prediction(
         };
         let of = |rubs: f64| root_mean_square(drive.departures(rubs));
         let channel = format!("joint_{}_torque_n_m", friction.joint + 1);
-        let sizes = [friction.believed, friction.friction].map(of);
+        let sizes = [friction.nominal, friction.friction].map(of);
         if let [Some(before), Some(after)] = sizes {
             errors.push(error(channel, before, after, None));
         }

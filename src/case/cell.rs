@@ -147,14 +147,14 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, CaseErr
     } else {
         servo_link(&axes, noise, bandwidth)
     };
-    let mut believed = cell.plant();
-    let own = sought(&mut believed);
-    let shown = servo.as_ref().and_then(|servo| servo.shown(&believed));
+    let mut nominal = cell.plant();
+    let own = sought(&mut nominal);
+    let shown = servo.as_ref().and_then(|servo| servo.shown(&nominal));
     let bandwidth = match (&servo, &shown) {
         (Some(servo), Some(_)) => servo.bandwidth,
         _ => scenario.nominal.cell.servo_bandwidth,
     };
-    let frictions = frictions(cell, &known, &believed);
+    let frictions = frictions(cell, &known, &nominal);
     let of_arm = unseen.as_ref().map(|(name, _, recording)| {
         let drives = drives(cell, recording);
         arm_prediction(cell, name, recording, servo.as_ref(), &frictions, &drives)
@@ -178,15 +178,15 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, CaseErr
     let [pressure, stroke, force] = scenario.noise;
     Ok(CellCase {
         input: DiagnosisInput {
-            tolerated: tolerated_numbers(cell, &believed),
-            believed: believed.clone(),
+            tolerated: tolerated_numbers(cell, &nominal),
+            nominal: nominal.clone(),
             noise: [pressure, stroke, force, UNMEASURED],
             recordings,
             unseen,
             candidates: candidates(cell).into_iter().chain(own).collect(),
             shown: shown
                 .into_iter()
-                .chain(frictions.iter().filter_map(|f| f.shown(&believed)))
+                .chain(frictions.iter().filter_map(|f| f.shown(&nominal)))
                 .collect(),
             tried: None,
             data_faults: Vec::new(),
@@ -200,7 +200,7 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, CaseErr
 }
 
 /// Friction of each joint by the drives' torques, where they were recorded.
-fn frictions(cell: &LoadedCell, known: &[Named], believed: &PlantParameters) -> Vec<JointFriction> {
+fn frictions(cell: &LoadedCell, known: &[Named], nominal: &PlantParameters) -> Vec<JointFriction> {
     let joints = cell.joints.len();
     let mut loads: Vec<Vec<DriveLoad>> = vec![Vec::new(); joints];
     for (_, _, recording) in known {
@@ -210,8 +210,8 @@ fn frictions(cell: &LoadedCell, known: &[Named], believed: &PlantParameters) -> 
     }
     let tolerance = cell.scenario.tolerance;
     let of = |joint: usize| {
-        let believed = believed.cell.joint_friction[joint];
-        joint_friction(joint, &loads[joint], believed, tolerance)
+        let nominal = nominal.cell.joint_friction[joint];
+        joint_friction(joint, &loads[joint], nominal, tolerance)
     };
     (0..joints).filter_map(of).collect()
 }
@@ -379,7 +379,7 @@ fn candidates(cell: &LoadedCell) -> Vec<&'static Effect> {
         .collect()
 }
 
-fn tolerated_numbers(cell: &LoadedCell, believed: &PlantParameters) -> Vec<Free> {
+fn tolerated_numbers(cell: &LoadedCell, nominal: &PlantParameters) -> Vec<Free> {
     let scenario = &cell.scenario;
     let numbers = [
         &registry::MOVING_MASS,
@@ -393,7 +393,7 @@ fn tolerated_numbers(cell: &LoadedCell, believed: &PlantParameters) -> Vec<Free>
     ];
     let mut free: Vec<Free> = if scenario.tolerance > 0.0 {
         let of =
-            |quantity: Quantity| tolerated(quantity, quantity.get(believed), scenario.tolerance);
+            |quantity: Quantity| tolerated(quantity, quantity.get(nominal), scenario.tolerance);
         numbers.map(|number| of(number.quantity())).to_vec()
     } else {
         Vec::new()

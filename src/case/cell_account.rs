@@ -78,7 +78,7 @@ fn arm(cell: &LoadedCell, read: &CellCase, diagnosis: &Diagnosis) -> Vec<String>
                 [-NORMAL_95, NORMAL_95].map(|z| friction.friction + z * friction.deviation),
                 "N m"
             ),
-            with_unit(friction.believed, "N m"),
+            with_unit(friction.nominal, "N m"),
             if friction.differs() {
                 ": another friction"
             } else {
@@ -102,7 +102,7 @@ fn arm(cell: &LoadedCell, read: &CellCase, diagnosis: &Diagnosis) -> Vec<String>
 /// Where the effects act, along the edge, and where they act most.
 fn places(diagnosis: &Diagnosis) -> Vec<String> {
     let mut places = Vec::new();
-    let bare = without_effects(&diagnosis.believed, diagnosis.best());
+    let bare = without_effects(&diagnosis.nominal, diagnosis.best());
     for (recording, measured) in diagnosis.evidence.recordings.iter().enumerate() {
         let Some(trajectory) = &measured.inputs.cell else {
             continue;

@@ -23,13 +23,13 @@ pub enum CaseError {
     Recorded(#[from] RecordedError),
     /// A law that a user tries, without a value somewhere in the recordings.
     #[error(
-        "--try: at `{part}`, character {place} of the expression: it is not finite in {recording} at {time_s:.4} s, as the believed model runs it; expected a value there for all its constants' ranges"
+        "--try: at `{part}`, character {location} of the expression: it is not finite in {recording} at {time_s:.4} s, as the believed model runs it; expected a value there for all its constants' ranges"
     )]
     TriedNotFinite {
         /// The part.
         part: String,
         /// Its first character, from 1.
-        place: usize,
+        location: usize,
         /// The recording.
         recording: String,
         /// When.

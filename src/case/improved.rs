@@ -22,7 +22,7 @@ pub(super) fn written<'a>(
         if found.iter().any(|(new, _)| new.excludes(effect)) || is_sought(present) {
             return None;
         }
-        let parameters = effect.parameters(&diagnosis.believed);
+        let parameters = effect.parameters(&diagnosis.nominal);
         let pairs = parameters.iter().zip(&present.values);
         Some(WrittenEffect {
             effect,
@@ -37,7 +37,7 @@ pub(super) fn written<'a>(
         .iter()
         .filter(|(effect, _)| effect.number_key().is_none());
     let new = laws.map(|(effect, numbers)| {
-        let parameters = effect.parameters(&diagnosis.believed);
+        let parameters = effect.parameters(&diagnosis.nominal);
         let own = |n: &&Number| parameters.iter().any(|p| p.quantity.name == n.name);
         let numbers = numbers.iter().filter(own);
         WrittenEffect {
@@ -130,7 +130,7 @@ pub(super) fn known(diagnosis: &Diagnosis) -> Known {
 fn named(diagnosis: &Diagnosis) -> Vec<(usize, String, Quantity)> {
     let best = diagnosis.best();
     let free = &best.fit.free;
-    let tolerated = best.tolerated(&diagnosis.believed);
+    let tolerated = best.tolerated(&diagnosis.nominal);
     let mut found: Vec<(usize, String, Quantity)> = (0..tolerated)
         .filter(|index| free[*index].quantity.name.contains('.'))
         .map(|index| {
@@ -142,8 +142,8 @@ fn named(diagnosis: &Diagnosis) -> Vec<(usize, String, Quantity)> {
         })
         .collect();
     for (place, effect) in best.effects.iter().enumerate() {
-        let own = best.numbers_of(&diagnosis.believed, place);
-        let parameters = effect.parameters(&diagnosis.believed);
+        let own = best.numbers_of(&diagnosis.nominal, place);
+        let parameters = effect.parameters(&diagnosis.nominal);
         for (index, parameter) in own.zip(parameters) {
             let name = match effect.number_key() {
                 Some(key) => key.to_owned(),

@@ -142,7 +142,7 @@ impl Case {
     pub fn known_fit(&self, sets: &[KnownEffects]) -> Result<Option<KnownFit>, CaseError> {
         let Some(input) = self
             .input()
-            .filter(|i| i.believed.parts == DeviceParts::Whole)
+            .filter(|i| i.nominal.parts == DeviceParts::Whole)
         else {
             return Ok(None);
         };
@@ -183,8 +183,8 @@ impl Case {
         check_in_recordings(&law, input)?;
         let mut own = OwnLaw::new(&Arc::new(law));
         own.acts = false;
-        let effect = own_effect(&own.text, input.believed.own.len());
-        input.believed.own.push(own);
+        let effect = own_effect(&own.text, input.nominal.own.len());
+        input.nominal.own.push(own);
         input.candidates.push(effect);
         input.tried = Some(effect);
         Ok(())
@@ -326,7 +326,7 @@ pub fn diagnose(
 fn check_in_recordings(law: &LawText, input: &DiagnosisInput) -> Result<(), CaseError> {
     for recording in input.recordings.iter().chain(&input.unseen) {
         let inputs = &recording.recorded.inputs;
-        let trajectory = simulate(&input.believed, inputs);
+        let trajectory = simulate(&input.nominal, inputs);
         for (sample, time) in inputs.time.iter().enumerate() {
             law.check_at(&trajectory.truth.moment(inputs, sample))
                 .map_err(|error| {
@@ -334,7 +334,7 @@ fn check_in_recordings(law: &LawText, input: &DiagnosisInput) -> Result<(), Case
                     let before = text.get(..error.span.start).unwrap_or_default();
                     CaseError::TriedNotFinite {
                         part: text.get(error.span.clone()).unwrap_or(text).to_owned(),
-                        place: before.chars().count() + 1,
+                        location: before.chars().count() + 1,
                         recording: recording.name.clone(),
                         time_s: *time,
                     }
@@ -406,7 +406,7 @@ fn of_plant(
             "the nominal model within its tolerances",
             with(&diagnosis.baseline.plant),
         ),
-        ("the nominal model", with(&diagnosis.believed)),
+        ("the nominal model", with(&diagnosis.nominal)),
     ];
     let (predicted, notes) = first_prediction((input, faults), &models);
     diagnosis.notes.extend(notes);

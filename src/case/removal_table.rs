@@ -6,7 +6,7 @@ use std::time::Instant;
 use super::error::CaseError;
 use super::rig::RIG;
 use crate::diagnosis::answer::Answer;
-use crate::diagnosis::removal::answer::{Told, answer};
+use crate::diagnosis::removal::answer::{AnswerContext, answer};
 use crate::diagnosis::removal::{
     Deviation, Left, Reference, RemovalDiagnosis, TableLaw, TableRow, diagnose_table,
 };
@@ -24,7 +24,7 @@ pub struct RemovalCase {
     /// The file.
     pub file: RemovalTableFile,
     /// The believed law.
-    pub believed: TableLaw,
+    pub nominal: TableLaw,
     /// Rows to fit.
     pub rows: Vec<TableRow>,
     /// Rows to predict.
@@ -76,10 +76,10 @@ impl RemovalCase {
             let (read, kept) = rows_of(&file, table)?;
             unseen.extend(read.into_iter().chain(kept));
         }
-        let believed = law_of(&file, &rows);
+        let nominal = law_of(&file, &rows);
         for row in &rows {
             if row.volume > 0.0
-                && !believed.log_ratio(row).is_finite()
+                && !nominal.log_ratio(row).is_finite()
                 && row.area.is_finite() == file.area.is_some()
             {
                 return Err(CaseError::Row {
@@ -94,7 +94,7 @@ impl RemovalCase {
         Ok(Self {
             name,
             file,
-            believed,
+            nominal,
             rows,
             unseen,
         })
@@ -114,15 +114,15 @@ impl RemovalCase {
     /// Too few rows with every setting known, a source that cannot be read again.
     pub fn diagnose(&self) -> Result<RemovalDiagnosed, CaseError> {
         let start = Instant::now();
-        let diagnosis = diagnose_table(&self.rows, &self.believed, self.file.speed_under_load)
+        let diagnosis = diagnose_table(&self.rows, &self.nominal, self.file.speed_under_load)
             .ok_or_else(|| self.few(self.rows.iter().filter(|row| row.volume > 0.0).count()))?;
-        let told = Told {
+        let context = AnswerContext {
             case: &self.name,
             is_feed: self.file.is_feed,
             rows_of_model: self.rows.iter().filter(|row| row.weight < 1.0).count(),
             unseen: &self.unseen,
         };
-        let mut answer = answer(&diagnosis, &told, start.elapsed().as_secs_f64());
+        let mut answer = answer(&diagnosis, &context, start.elapsed().as_secs_f64());
         answer.details.provenance = self.provenance()?;
         Ok(RemovalDiagnosed {
             answer,
@@ -265,23 +265,23 @@ fn law_of(file: &RemovalTableFile, rows: &[TableRow]) -> TableLaw {
             .collect();
         (logs.iter().sum::<f64>() / logs.len() as f64).exp()
     };
-    let believed = &file.believed;
-    let [force, time, speed, area] = believed.exponents;
+    let nominal = &file.nominal;
+    let [force, time, speed, area] = nominal.exponents;
     TableLaw {
-        volume: believed.volume,
+        volume: nominal.volume,
         reference: Reference {
-            force: believed.force.unwrap_or_else(|| mean(|row| row.force)),
-            time: believed.time.unwrap_or_else(|| mean(|row| row.time)),
-            speed: believed.speed.unwrap_or_else(|| mean(|row| row.speed)),
-            area: believed.area.unwrap_or_else(|| mean(|row| row.area)),
+            force: nominal.force.unwrap_or_else(|| mean(|row| row.force)),
+            time: nominal.time.unwrap_or_else(|| mean(|row| row.time)),
+            speed: nominal.speed.unwrap_or_else(|| mean(|row| row.speed)),
+            area: nominal.area.unwrap_or_else(|| mean(|row| row.area)),
         },
         force,
         time,
         speed,
         area,
-        threshold: believed.threshold,
-        sag: believed.sag,
-        wear: believed.wear,
+        threshold: nominal.threshold,
+        sag: nominal.sag,
+        wear: nominal.wear,
     }
 }
 
@@ -322,15 +322,15 @@ fn improved(file: &RemovalTableFile, diagnosis: &RemovalDiagnosis) -> String {
     for of in Deviation::ALL.into_iter().skip(1) {
         put(of.key(), law.number(of));
     }
-    for told in &diagnosis.effects {
-        let [value, low, high] = told.value;
-        let scale = if told.deviation == Deviation::Coefficient {
+    for of_effect in &diagnosis.effects {
+        let [value, low, high] = of_effect.value;
+        let scale = if of_effect.deviation == Deviation::Coefficient {
             1e9
         } else {
             1.0
         };
         let [value, low, high] = [value, low, high].map(|v| v * scale);
-        let key = told.deviation.key();
+        let key = of_effect.deviation.key();
         text += &format!("# found: {key} = {value:.4e}, 95 % of {low:.3e} to {high:.3e}\n");
     }
     text

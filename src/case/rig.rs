@@ -111,10 +111,10 @@ pub(super) fn input_of(rig: &RigFile, folder: &Path) -> Result<DiagnosisInput, C
         })
     };
     let tolerances = rig.tolerances.iter();
-    let mut believed = rig.plant.clone();
-    let own = sought(&mut believed);
+    let mut nominal = rig.plant.clone();
+    let own = sought(&mut nominal);
     let mut input = DiagnosisInput {
-        believed,
+        nominal,
         tolerated: tolerances
             .map(|t| tolerated(t.quantity, t.value, t.tolerance))
             .chain(of_link(rig.plant.parts, rig.noise[0], rig.pressure_drift))

@@ -160,19 +160,19 @@ fn check_stretch(file: &Path, choice: &EdgeChoice, curve: &EdgeCurve) -> Result<
 /// The believed pose turned and shifted about the middle of the edge.
 fn real_pose(workpiece: &WorkpieceScenario, edge: &EdgeCurve) -> DPose3 {
     let Misplacement { shift, tilt } = workpiece.misplacement;
-    let believed = workpiece.world_from_part;
+    let nominal = workpiece.world_from_part;
     let middle = edge.at(0.5 * edge.length);
     let (pivot, bisector) = (
-        believed.transform_point(middle.point),
-        believed.rotation * middle.bisector,
+        nominal.transform_point(middle.point),
+        nominal.rotation * middle.bisector,
     );
-    let tangent = believed.rotation * middle.tangent;
+    let tangent = nominal.rotation * middle.tangent;
     // Turning the tangent towards the bisector lifts the far end towards the tool.
     let turn = DQuat::from_axis_angle(tangent.cross(bisector).normalize_or(DVec3::X), tilt);
     DPose3::from_translation(pivot + bisector * shift)
         * DPose3::from_rotation(turn)
         * DPose3::from_translation(-pivot)
-        * believed
+        * nominal
 }
 
 /// Lift of the ball's centre by a burr along an edge of a length [m].

@@ -13,14 +13,14 @@ pub(super) fn check(scenario: &Scenario, part: &Part, path: &ToolPath) -> Result
     if scenario.device.locked {
         return Ok(());
     }
-    let believed = scenario.workpiece.world_from_part;
+    let nominal = scenario.workpiece.world_from_part;
     let length = path.length();
     let mut range = [f64::INFINITY, f64::NEG_INFINITY];
     for look in 0..=LOOKS {
         let station = path.at(length * look as f64 / LOOKS as f64);
         let really = part
             .world_from_part
-            .transform_point(believed.inverse_transform_point(station.point));
+            .transform_point(nominal.inverse_transform_point(station.point));
         let nearer = (really - station.point).dot(station.normal) / path.share(&station);
         let stroke = scenario.process.working_stroke - nearer;
         range = [range[0].min(stroke), range[1].max(stroke)];

@@ -170,14 +170,14 @@ pub fn asked(effect: &Effect) -> String {
 }
 
 /// Its numbers, as large as they are shown.
-pub fn sizes(effect: &Effect, believed: &PlantParameters) -> Vec<f64> {
-    let usual = effect.usual(believed);
+pub fn sizes(effect: &Effect, nominal: &PlantParameters) -> Vec<f64> {
+    let usual = effect.usual(nominal);
     let size = of(effect).size;
     let own = |key: &str, usual: f64| match size {
         Some(size) if size.key == key => size.value,
         _ => usual,
     };
-    let parameters = effect.parameters(believed);
+    let parameters = effect.parameters(nominal);
     let pairs = parameters.iter().zip(usual);
     pairs
         .map(|(parameter, usual)| own(parameter.quantity.name, usual))
@@ -395,9 +395,11 @@ fn of_joint(recording: &Recording, joint: usize) -> Vec<Signal> {
     let scaled = |values: Vec<f64>| values.iter().map(|value| 1e3 * value).collect();
     let speed = values(JointSignal::Velocity).map(scaled);
     let pair = values(JointSignal::Encoder).zip(values(JointSignal::Reference));
-    let trail = pair.map(|(read, told)| {
-        let pairs = read.iter().zip(&told);
-        pairs.map(|(read, told)| 1e3 * (read - told)).collect()
+    let trail = pair.map(|(read, commanded)| {
+        let pairs = read.iter().zip(&commanded);
+        pairs
+            .map(|(read, commanded)| 1e3 * (read - commanded))
+            .collect()
     });
     [
         torque.map(|values| signal("torque", "Torque", "torque", "N m", values)),
@@ -465,9 +467,9 @@ fn inputs_of(parts: DeviceParts, name: &str) -> PlantInputs {
 }
 
 /// The run of a part on the inputs that show an effect, with the effect or without.
-fn run_part(believed: &PlantParameters, effect: &Effect, has: bool) -> Signals {
-    let inputs = inputs_of(believed.parts, effect.name);
-    let mut plant = believed.clone();
+fn run_part(nominal: &PlantParameters, effect: &Effect, has: bool) -> Signals {
+    let inputs = inputs_of(nominal.parts, effect.name);
+    let mut plant = nominal.clone();
     if effect.name == "chamber_shut_later" {
         // On a chamber that holds nothing would show it.
         plant.links.leak.proportional = 0.1;
@@ -479,7 +481,7 @@ fn run_part(believed: &PlantParameters, effect: &Effect, has: bool) -> Signals {
         }
     }
     let trajectory = simulate(&plant, &inputs);
-    let (channel, title, axis, unit, factor) = match believed.parts {
+    let (channel, title, axis, unit, factor) = match nominal.parts {
         DeviceParts::ClosedChamber => (
             Channel::RegulatorPressure,
             "Chamber, read",
@@ -515,7 +517,7 @@ fn run_part(believed: &PlantParameters, effect: &Effect, has: bool) -> Signals {
     }
     Signals {
         signals,
-        set: match believed.parts {
+        set: match nominal.parts {
             DeviceParts::Regulator => inputs.set_pressure.iter().map(|p| 1e-5 * p).collect(),
             _ => Vec::new(),
         },

@@ -107,8 +107,8 @@ impl<'a> Archive<'a> {
     }
 
     /// The design at these places from 0 to 1.
-    pub fn at(&self, places: &[f64]) -> Arc<EvaluatedDesign> {
-        let values = self.study.values(places);
+    pub fn at(&self, coordinates: &[f64]) -> Arc<EvaluatedDesign> {
+        let values = self.study.values(coordinates);
         let key: Vec<u64> = values.iter().map(|value| sortable(*value)).collect();
         if let Some(evaluated) = self.known().get(&key) {
             return evaluated.clone();

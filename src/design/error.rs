@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::keys::error::Place;
+use crate::keys::error::Location;
 use crate::scenario::ScenarioError;
 
 /// A study that cannot be done.
@@ -13,10 +13,10 @@ pub enum DesignError {
     #[error(transparent)]
     File(#[from] ScenarioError),
     /// A variable that a scenario cannot take.
-    #[error("{place}: `variables.{key}` does not fit a scenario of the study: {reason}")]
+    #[error("{location}: `variables.{key}` does not fit a scenario of the study: {reason}")]
     Variable {
         /// Where.
-        place: Place,
+        location: Location,
         /// The variable's key.
         key: String,
         /// Message on the scenario.
@@ -24,11 +24,11 @@ pub enum DesignError {
     },
     /// A drawn value that a scenario cannot take.
     #[error(
-        "{place}: `robustness.variables.{key}` draws {value}, which a scenario of the study does not take: {reason}"
+        "{location}: `robustness.variables.{key}` draws {value}, which a scenario of the study does not take: {reason}"
     )]
     Scatter {
         /// Where.
-        place: Place,
+        location: Location,
         /// The key.
         key: String,
         /// A value near an end of what is drawn.
@@ -46,11 +46,11 @@ pub enum DesignError {
     },
     /// A metric that no scenario gives.
     #[error(
-        "{place}: `{key}` names the metric `{metric}`, which no scenario gives for the starting design; known here are {known}"
+        "{location}: `{key}` names the metric `{metric}`, which no scenario gives for the starting design; known here are {known}"
     )]
     UnknownMetric {
         /// Where.
-        place: Place,
+        location: Location,
         /// The key.
         key: String,
         /// The metric.

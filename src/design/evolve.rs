@@ -31,8 +31,8 @@ impl CostFunction for Ranking<'_> {
     type Output = f64;
     type Error = Infallible;
 
-    fn cost(&self, places: &Vec<f64>) -> Result<f64, Infallible> {
-        Ok(self.goal.rank(&self.archive.at(places)))
+    fn cost(&self, coordinates: &Vec<f64>) -> Result<f64, Infallible> {
+        Ok(self.goal.rank(&self.archive.at(coordinates)))
     }
 }
 

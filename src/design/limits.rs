@@ -1,7 +1,7 @@
 //! Limits that a design must keep, each one-sided.
 
 use super::candidate::Outcome;
-use crate::quantity::spoken::{symbol, with_unit};
+use crate::quantity::display_name::{symbol, with_unit};
 
 /// The limited quantity.
 #[derive(Debug, Clone, PartialEq, Eq)]

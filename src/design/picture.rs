@@ -10,7 +10,7 @@ use plotters::prelude::*;
 
 use super::error::DesignError;
 use super::result::{Candidate, StudyResult};
-use crate::quantity::spoken::axis;
+use crate::quantity::display_name::axis;
 use style::{
     Area, CHOSEN, Chart, DARK, Drawn, FONT, FRONT, GREY, GRID, LARGE, MARGIN, PX, TEXT, extent,
     inside, limits_of, svg, tick, written,

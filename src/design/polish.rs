@@ -25,15 +25,15 @@ const FAILED: f64 = 10.0;
 /// A place and its rank.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Ranked {
-    pub places: Vec<f64>,
+    pub coordinates: Vec<f64>,
     pub rank: f64,
 }
 
 impl Ranked {
-    pub fn of(archive: &Archive<'_>, goal: &Goal, places: &[f64]) -> Self {
+    pub fn of(archive: &Archive<'_>, goal: &Goal, coordinates: &[f64]) -> Self {
         Self {
-            rank: goal.rank(&archive.at(places)),
-            places: places.to_vec(),
+            rank: goal.rank(&archive.at(coordinates)),
+            coordinates: coordinates.to_vec(),
         }
     }
 }
@@ -51,15 +51,15 @@ struct Local<'a> {
 impl Local<'_> {
     /// Evaluates within the bounds, whatever the method asks for.
     fn judge(&self, point: &[f64]) -> std::sync::Arc<EvaluatedDesign> {
-        let mut places = self.fixed.clone();
-        for (index, place) in self.free.iter().zip(point) {
-            places[*index] = place.clamp(0.0, 1.0);
+        let mut coordinates = self.fixed.clone();
+        for (index, coordinate) in self.free.iter().zip(point) {
+            coordinates[*index] = coordinate.clamp(0.0, 1.0);
         }
-        let evaluated = self.archive.at(&places);
+        let evaluated = self.archive.at(&coordinates);
         let rank = self.goal.rank(&evaluated);
         let mut best = self.best.lock().unwrap_or_else(PoisonError::into_inner);
         if rank < best.rank {
-            *best = Ranked { places, rank };
+            *best = Ranked { coordinates, rank };
         }
         evaluated
     }
@@ -105,7 +105,9 @@ impl NonlinearInequalityValues for Local<'_> {
         point: &Vec<f64>,
     ) -> Result<Vec<f64>, ConstraintSolveError<Infallible>> {
         let evaluated = self.judge(point);
-        let bounds = point.iter().flat_map(|place| [-place, place - 1.0]);
+        let bounds = point
+            .iter()
+            .flat_map(|coordinate| [-coordinate, coordinate - 1.0]);
         let mut values: Vec<f64> = bounds.collect();
         match &evaluated.result {
             Ok(scored) => values.extend(self.goal.excesses(scored).iter().map(|e| e + INSIDE)),

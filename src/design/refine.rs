@@ -36,12 +36,14 @@ pub(super) fn refine(
         2 * budget / 3
     };
     let mut best = best_of(archive, goal, starts, radius, share, &mut left)?;
-    let mut seen: BTreeSet<Vec<usize>> =
-        starts.iter().map(|places| choice(study, places)).collect();
+    let mut seen: BTreeSet<Vec<usize>> = starts
+        .iter()
+        .map(|coordinates| choice(study, coordinates))
+        .collect();
     while let Some(current) = best.clone() {
-        let neighbours: Vec<Vec<f64>> = neighbours(study, &current.places)
+        let neighbours: Vec<Vec<f64>> = neighbours(study, &current.coordinates)
             .into_iter()
-            .filter(|places| seen.insert(choice(study, places)))
+            .filter(|coordinates| seen.insert(choice(study, coordinates)))
             .collect();
         let share = 2 * left / 3;
         match best_of(archive, goal, &neighbours, radius, share, &mut left)? {
@@ -52,7 +54,7 @@ pub(super) fn refine(
     // A new simplex, smaller each time, where the first has lost its shape.
     for shrink in SHRINK {
         let Some(current) = best.clone() else { break };
-        let again = [current.places];
+        let again = [current.coordinates];
         let share = left;
         match best_of(archive, goal, &again, shrink * radius, share, &mut left)? {
             Some(found) if found.rank < current.rank => best = Some(found),
@@ -77,7 +79,7 @@ fn best_of(
     }
     let polished: Vec<(Ranked, usize)> = starts
         .par_iter()
-        .map(|places| polish(archive, goal, places, radius, each))
+        .map(|coordinates| polish(archive, goal, coordinates, radius, each))
         .collect::<Result<_, _>>()?;
     let used: usize = polished.iter().map(|(_, used)| used).sum();
     *left = left.saturating_sub(used);
@@ -86,28 +88,28 @@ fn best_of(
 }
 
 /// Entries that a place stands for, one a catalogue.
-fn choice(study: &Study, places: &[f64]) -> Vec<usize> {
-    let pairs = study.variables.iter().zip(places);
+fn choice(study: &Study, coordinates: &[f64]) -> Vec<usize> {
+    let pairs = study.variables.iter().zip(coordinates);
     pairs
         .filter(|(variable, _)| variable.domain.count().is_some())
-        .map(|(variable, place)| variable.domain.index(*place))
+        .map(|(variable, coordinate)| variable.domain.index(*coordinate))
         .collect()
 }
 
 /// The place with one catalogue's entry replaced by the next smaller or larger one.
-fn neighbours(study: &Study, places: &[f64]) -> Vec<Vec<f64>> {
+fn neighbours(study: &Study, coordinates: &[f64]) -> Vec<Vec<f64>> {
     let mut found = Vec::new();
     for (axis, variable) in study.variables.iter().enumerate() {
         let Some(count) = variable.domain.count() else {
             continue;
         };
-        let index = variable.domain.index(places[axis]);
+        let index = variable.domain.index(coordinates[axis]);
         for next in [index.checked_sub(1), Some(index + 1)]
             .into_iter()
             .flatten()
         {
             if next < count {
-                let mut neighbour = places.to_vec();
+                let mut neighbour = coordinates.to_vec();
                 neighbour[axis] = super::Domain::place_of_entry(next, count);
                 found.push(neighbour);
             }
@@ -131,16 +133,16 @@ pub(super) fn distinct_best(
     ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut chosen: Vec<Vec<f64>> = Vec::new();
     for (_, evaluated) in ranked {
-        let places = places_of(study, evaluated);
+        let coordinates = coordinates_of(study, evaluated);
         let apart = |other: &Vec<f64>| {
-            choice(study, other) != choice(study, &places)
+            choice(study, other) != choice(study, &coordinates)
                 || other
                     .iter()
-                    .zip(&places)
+                    .zip(&coordinates)
                     .any(|(a, b)| (a - b).abs() > APART)
         };
         if chosen.iter().all(apart) {
-            chosen.push(places);
+            chosen.push(coordinates);
         }
         if chosen.len() == count {
             break;
@@ -150,9 +152,9 @@ pub(super) fn distinct_best(
 }
 
 /// Places of a design.
-pub(super) fn places_of(study: &Study, evaluated: &EvaluatedDesign) -> Vec<f64> {
+pub(super) fn coordinates_of(study: &Study, evaluated: &EvaluatedDesign) -> Vec<f64> {
     let pairs = study.variables.iter().zip(&evaluated.values);
     pairs
-        .map(|(variable, value)| variable.domain.place(*value))
+        .map(|(variable, value)| variable.domain.coordinate(*value))
         .collect()
 }

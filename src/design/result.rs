@@ -169,8 +169,8 @@ impl StudyResult {
             text,
             "# {} {} (start: {})",
             names.minimised,
-            crate::quantity::spoken::number(self.chosen.objective),
-            crate::quantity::spoken::number(self.start.objective),
+            crate::quantity::display_name::number(self.chosen.objective),
+            crate::quantity::display_name::number(self.start.objective),
         );
         text + &self.chosen.design.override_text()
     }

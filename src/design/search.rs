@@ -29,7 +29,7 @@ use super::result::StudyResult;
 use super::robustness;
 use super::study::{Study, TradeOff};
 use super::variable::Domain;
-use crate::quantity::spoken::with_unit;
+use crate::quantity::display_name::with_unit;
 
 /// Shares of the budget: evolution and refinement of the objective, of the second one, all levels, what binds. The second one's end of the front is as hard to
 /// find as the objective's own: with 0.08 and 0.06 for it, 2000 designs missed the front below 127 N in the example of docs/DESIGN.md, which 4000 follow down to 110 N.
@@ -128,12 +128,12 @@ fn start(archive: &Archive<'_>) -> Result<Good, DesignError> {
         .flat_map(|scenario| scenario.metrics.keys());
     let known: BTreeSet<&String> = metrics.collect();
     let unknown = study
-        .places
+        .locations
         .iter()
         .find(|(_, metric, _)| !known.contains(metric));
     match (unknown, &evaluated.result) {
-        (Some((key, metric, place)), _) => Err(DesignError::UnknownMetric {
-            place: place.clone(),
+        (Some((key, metric, location)), _) => Err(DesignError::UnknownMetric {
+            location: location.clone(),
             key: key.clone(),
             metric: metric.clone(),
             known: known.into_iter().cloned().collect::<Vec<_>>().join(", "),

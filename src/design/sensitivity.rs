@@ -10,7 +10,7 @@ use super::archive::{Archive, EvaluatedDesign, Scored};
 use super::error::DesignError;
 use super::goal::Goal;
 use super::polish::polish;
-use super::refine::places_of;
+use super::refine::coordinates_of;
 use super::result::{ActiveBound, ActiveLimit, Sensitivity};
 use super::study::Study;
 use super::variable::{Domain, Variable, rounded};
@@ -122,10 +122,10 @@ pub(super) fn active_bounds(
             continue;
         }
         // By its place, so that a logarithmic scale counts as what it is; an entry of a catalogue is the end or is not.
-        let place = variable.domain.place(*value);
+        let coordinate = variable.domain.coordinate(*value);
         let ends = match variable.domain {
             Domain::Catalogue(_) => [*value == min, *value == max],
-            _ => [place <= ACTIVE, place >= 1.0 - ACTIVE],
+            _ => [coordinate <= ACTIVE, coordinate >= 1.0 - ACTIVE],
         };
         for (side, bound, at_end, beyond) in
             [("min", min, ends[0], -1.0), ("max", max, ends[1], 1.0)]
@@ -160,7 +160,7 @@ pub(super) fn active_limits(
     let active: Vec<usize> = (0..study.limits.len())
         .filter(|index| score.excess[*index] >= -ACTIVE)
         .collect();
-    let places = places_of(study, chosen);
+    let coordinates = coordinates_of(study, chosen);
     let each = budget / active.len().max(1);
     active
         .into_par_iter()
@@ -169,8 +169,8 @@ pub(super) fn active_limits(
             let limit = &study.limits[index];
             let step = STEP * limit.slack();
             looser.slack[index] = step / limit.scale();
-            let (found, _) = polish(archive, &looser, &places, RADIUS, each)?;
-            let change = match &archive.at(&found.places).result {
+            let (found, _) = polish(archive, &looser, &coordinates, RADIUS, each)?;
+            let change = match &archive.at(&found.coordinates).result {
                 Ok(better) if Goal::keeps(found.rank) => {
                     Some(relative(score.objective, better.objective))
                 }

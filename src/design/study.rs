@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::keys::check::Section;
 use crate::keys::document::{Document, read_text};
-use crate::keys::error::Place;
+use crate::keys::error::Location;
 use crate::scenario::ScenarioError;
 
 use super::candidate::{Design, Outcome, scenario_key};
@@ -40,7 +40,7 @@ pub struct Study {
     /// What is drawn at the chosen design, if anything is.
     pub scattering: Option<Scattering>,
     /// Where the metrics of both objectives, then those of the limits stand in the file.
-    pub(super) places: Vec<(String, String, Place)>,
+    pub(super) locations: Vec<(String, String, Location)>,
 }
 
 /// A metric over the scenarios.
@@ -126,17 +126,17 @@ impl Study {
     }
 
     /// Values at places from 0 to 1, one a variable.
-    pub(super) fn values(&self, places: &[f64]) -> Vec<f64> {
-        let pairs = self.variables.iter().zip(places);
+    pub(super) fn values(&self, coordinates: &[f64]) -> Vec<f64> {
+        let pairs = self.variables.iter().zip(coordinates);
         pairs
-            .map(|(variable, place)| variable.domain.value(*place))
+            .map(|(variable, coordinate)| variable.domain.value(*coordinate))
             .collect()
     }
 
     /// Places of the starting design.
     pub(super) fn start(&self) -> Vec<f64> {
-        let place = |variable: &Variable| variable.domain.place(variable.start);
-        self.variables.iter().map(place).collect()
+        let coordinate = |variable: &Variable| variable.domain.coordinate(variable.start);
+        self.variables.iter().map(coordinate).collect()
     }
 }
 
@@ -168,7 +168,7 @@ pub(super) fn from_text(path: &Path, text: &str) -> Result<Study, ScenarioError>
         scenarios: scenarios(&section, &file.study.scenarios)?,
         seed: file.study.seed,
         evaluations: section.count("evaluations", evaluations, least..=1_000_000)?,
-        places: places(&document, &objective, trade_off.as_ref(), &limits),
+        locations: locations(&document, &objective, trade_off.as_ref(), &limits),
         variables,
         objective,
         trade_off,
@@ -187,12 +187,12 @@ fn least_evaluations(variables: usize) -> usize {
 /// `[variables.controller.gain]` is a table in a table; say how it is meant to be written.
 fn quote_dotted(error: ScenarioError) -> ScenarioError {
     match error {
-        ScenarioError::UnknownKey { place, key, .. }
+        ScenarioError::UnknownKey { location, key, .. }
             if key.matches('.').count() > 1 && !key.contains("device") =>
         {
             let name = key.trim_start_matches("variables.").to_owned();
             ScenarioError::UnknownKey {
-                place,
+                location,
                 key,
                 advice: format!("a name with a dot stands in quotes: [variables.\"{name}\"]"),
             }
@@ -320,12 +320,12 @@ fn check_bounds(
 }
 
 /// Key, metric and place of every metric that the file names.
-fn places(
+fn locations(
     document: &Document<'_>,
     objective: &Objective,
     trade_off: Option<&TradeOff>,
     limits: &[Limit],
-) -> Vec<(String, String, Place)> {
+) -> Vec<(String, String, Location)> {
     let mut named = vec![("objective.minimise".to_owned(), objective.metric.clone())];
     if let Some(TradeOff::Metric(objective)) = trade_off {
         named.push(("objective.trade_off".to_owned(), objective.metric.clone()));
@@ -335,6 +335,6 @@ fn places(
             named.push((format!("limits.{metric}"), metric.clone()));
         }
     }
-    let place = |(key, metric): (String, String)| (key.clone(), metric, document.place(&key));
-    named.into_iter().map(place).collect()
+    let location = |(key, metric): (String, String)| (key.clone(), metric, document.location(&key));
+    named.into_iter().map(location).collect()
 }

@@ -7,7 +7,7 @@ use super::robustness::KeptShare;
 use super::study::Study;
 use super::variable::{Domain, Variable};
 use crate::quantity::change as percent;
-use crate::quantity::spoken::{number, symbol, with_unit};
+use crate::quantity::display_name::{number, symbol, with_unit};
 
 const WIDTH: usize = 80;
 /// Rows of the front that are printed; design.json has them all.
@@ -159,7 +159,7 @@ fn metrics(out: &mut String, study: &Study, result: &StudyResult) {
 }
 
 fn named(study: &Study, metric: &str) -> bool {
-    study.places.iter().any(|(_, named, _)| named == metric)
+    study.locations.iter().any(|(_, named, _)| named == metric)
 }
 
 fn compared(out: &mut String, metric: &str, [start, chosen]: [f64; 2]) {

@@ -3,7 +3,7 @@
 mod check;
 
 use super::catalogue::{STANDARD_CYLINDERS, standard_rod};
-use crate::keys::error::Place;
+use crate::keys::error::Location;
 
 pub(super) use check::variable;
 
@@ -22,7 +22,7 @@ pub struct Variable {
     /// Value of the starting design, in the key's unit.
     pub start: f64,
     /// Where it stands in the study file.
-    pub place: Place,
+    pub location: Location,
 }
 
 /// Values of a variable, in its key's unit.
@@ -47,17 +47,19 @@ pub struct CatalogueEntry {
 
 impl Domain {
     /// Value at a place from 0 to 1.
-    pub(super) fn value(&self, place: f64) -> f64 {
-        let place = place.clamp(0.0, 1.0);
+    pub(super) fn value(&self, coordinate: f64) -> f64 {
+        let coordinate = coordinate.clamp(0.0, 1.0);
         match self {
-            Self::Linear(min, max) => rounded(min + (max - min) * place).clamp(*min, *max),
-            Self::Logarithmic(min, max) => rounded(min * (max / min).powf(place)).clamp(*min, *max),
-            Self::Catalogue(entries) => entries[self.index(place)].value,
+            Self::Linear(min, max) => rounded(min + (max - min) * coordinate).clamp(*min, *max),
+            Self::Logarithmic(min, max) => {
+                rounded(min * (max / min).powf(coordinate)).clamp(*min, *max)
+            }
+            Self::Catalogue(entries) => entries[self.index(coordinate)].value,
         }
     }
 
     /// Place of a value: the middle of its share for a catalogue.
-    pub(super) fn place(&self, value: f64) -> f64 {
+    pub(super) fn coordinate(&self, value: f64) -> f64 {
         match self {
             Self::Linear(min, max) => (value - min) / (max - min),
             Self::Logarithmic(min, max) => (value / min).ln() / (max / min).ln(),
@@ -69,11 +71,11 @@ impl Domain {
     }
 
     /// Entry of a catalogue at a place; 0 for a continuous variable.
-    pub(super) fn index(&self, place: f64) -> usize {
+    pub(super) fn index(&self, coordinate: f64) -> usize {
         match self {
             // Casting saturates at zero.
             Self::Catalogue(entries) => {
-                ((place * entries.len() as f64) as usize).min(entries.len() - 1)
+                ((coordinate * entries.len() as f64) as usize).min(entries.len() - 1)
             }
             _ => 0,
         }
@@ -142,12 +144,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_and_values_are_inverse_and_end_on_the_bounds() {
+    fn coordinates_and_values_are_inverse_and_end_on_the_bounds() {
         for domain in [Domain::Linear(0.5, 7.0), Domain::Logarithmic(0.01, 30.0)] {
             let [min, max] = domain.ends();
             assert_eq!((domain.value(0.0), domain.value(1.0)), (min, max));
-            for place in [0.1, 0.25, 0.7] {
-                assert!((domain.place(domain.value(place)) - place).abs() < 1e-4);
+            for coordinate in [0.1, 0.25, 0.7] {
+                assert!((domain.coordinate(domain.value(coordinate)) - coordinate).abs() < 1e-4);
             }
         }
         let log = Domain::Logarithmic(0.01, 100.0);
@@ -158,9 +160,9 @@ mod tests {
     fn entries_of_a_catalogue_have_equal_shares() {
         let entry = |value| CatalogueEntry { value, rod: None };
         let domain = Domain::Catalogue([4.0, 6.0, 9.0].map(entry).to_vec());
-        let values = [0.0, 0.3, 0.34, 0.66, 0.67, 1.0].map(|place| domain.value(place));
+        let values = [0.0, 0.3, 0.34, 0.66, 0.67, 1.0].map(|coordinate| domain.value(coordinate));
         assert_eq!(values, [4.0, 4.0, 6.0, 6.0, 9.0, 9.0]);
-        assert_eq!(domain.value(domain.place(6.0)), 6.0);
+        assert_eq!(domain.value(domain.coordinate(6.0)), 6.0);
     }
 
     #[test]

@@ -328,7 +328,7 @@ fn the_compressor_fills_the_reservoir_linearly_to_its_full_pressure() {
 
 #[test]
 fn a_late_valve_does_what_a_prompt_one_does_that_is_told_later() {
-    let run = |switching_delay: f64, told: std::ops::Range<i32>| {
+    let run = |switching_delay: f64, commanded: std::ops::Range<i32>| {
         let device = Device::new(DeviceParameters {
             switching_delay,
             ..DeviceParameters::default()
@@ -339,7 +339,7 @@ fn a_late_valve_does_what_a_prompt_one_does_that_is_told_later() {
             speed: 0.0,
         };
         let step = |step| {
-            state.valve = match told.contains(&step) {
+            state.valve = match commanded.contains(&step) {
                 true => ValvePosition::Retract,
                 false => ValvePosition::Extend,
             };

@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 use self::details::Details;
 use self::doubt::Doubt;
 use self::estimate::Estimate;
-use self::words::spoken;
+use self::words::display_name;
 use super::difference::mismatch::Mismatch;
 use super::formula::unlisted::report::UnlistedReport;
 use crate::effects::UNLISTED;
@@ -161,13 +161,13 @@ impl FoundEffect {
 
     /// Presentation of one of its numbers: words, unit, and that unit's multiples in one of SI.
     #[must_use]
-    pub fn spoken(&self, name: &str) -> (String, String, f64) {
+    pub fn display_name(&self, name: &str) -> (String, String, f64) {
         if let Some(law) = &self.law {
             let unit = law.units.get(name).cloned().unwrap_or_default();
             return (name.to_owned(), unit, 1.0);
         }
         // The value of a number that is off is in the unit of its key.
-        let (words, unit, factor) = spoken(self.key.as_deref().unwrap_or(name));
+        let (words, unit, factor) = display_name(self.key.as_deref().unwrap_or(name));
         (words, unit.to_owned(), factor)
     }
 }

@@ -76,17 +76,17 @@ pub fn diagnose(
     });
     observer(&Step::Experiments.begins());
     let experiments = experiments(case, &evidence, &ranked);
-    let estimates = estimates(&case.believed, &ranked, &evidence);
+    let estimates = estimates(&case.nominal, &ranked, &evidence);
     Diagnosis {
         settings: *settings,
-        believed: case.believed.clone(),
+        nominal: case.nominal.clone(),
         tolerated: case.tolerated.clone(),
         looked_at: case.candidates.len(),
-        ruled_out: match case.believed.parts.output() {
+        ruled_out: match case.nominal.parts.output() {
             Some(channel) if !is_spent => ruled_out(&search, best, channel),
             _ => Vec::new(),
         },
-        detectable: match case.believed.parts == DeviceParts::Whole
+        detectable: match case.nominal.parts == DeviceParts::Whole
             && best.finds_nothing()
             && !is_spent
         {
@@ -94,16 +94,16 @@ pub fn diagnose(
             false => Vec::new(),
         },
         tried: (case.tried)
-            .and_then(|effect| Tried::of(effect, &case.believed, (&ranked, &evidence))),
+            .and_then(|effect| Tried::of(effect, &case.nominal, (&ranked, &evidence))),
         roughly,
         model_error,
         remaining,
         half_widths: half_widths(&evidence, &ranked[0], &estimates.covariance),
         estimates,
         shape: Shape::of(&evidence, best),
-        mismatch: intervals(&evidence, &case.believed, best),
+        mismatch: intervals(&evidence, &case.nominal, best),
         largest: Largest::of(&evidence, &ranked[0], remaining.as_ref()),
-        as_believed: evidence.predict(&case.believed, false, None),
+        as_nominal: evidence.predict(&case.nominal, false, None),
         baseline,
         unseen,
         experiments,
@@ -120,7 +120,7 @@ pub fn diagnose(
 fn finite_first(search: &Search<'_>, ranked: &mut Vec<Ranked>) -> Vec<String> {
     let mut notes = Vec::new();
     while !search.is_finite(&ranked[0].hypothesis) {
-        let names = ranked[0].hypothesis.spoken_names();
+        let names = ranked[0].hypothesis.effect_display_names();
         if names.is_empty() {
             notes.push("no model stays finite over the recording that is to be predicted, the nominal one neither".to_owned());
             break;
@@ -169,7 +169,7 @@ fn found(
     settings: &Settings,
     observer: &mut Observer<'_>,
 ) -> Found {
-    let remaining = (case.believed.parts.output())
+    let remaining = (case.nominal.parts.output())
         .map(|channel| Remaining::of(&search_of(case, &evidence, settings), channel, observer))
         .filter(|(remaining, _)| !remaining.is_noise());
     let Some((mut remaining, mut seed)) = remaining else {
@@ -214,7 +214,7 @@ fn found(
 
 /// Experiments that would tell the best explanation from the next: those known are of a bench, what an arm can do is in its programs.
 fn experiments(case: &DiagnosisInput, evidence: &Evidence, ranked: &[Ranked]) -> Vec<Separation> {
-    let of_bench = case.believed.parts == DeviceParts::Whole
+    let of_bench = case.nominal.parts == DeviceParts::Whole
         && evidence.recordings.iter().all(|m| m.inputs.cell.is_none());
     match ranked {
         [best, rival, ..] if of_bench => {
@@ -263,13 +263,13 @@ pub(super) fn search_of<'a>(
     settings: &Settings,
 ) -> Search<'a> {
     // A single link is simulated in no time.
-    let (look, most_effects) = match case.believed.parts {
+    let (look, most_effects) = match case.nominal.parts {
         DeviceParts::Whole => (3, settings.most_effects),
         _ => (12, settings.most_effects_of_part),
     };
     Search {
         evidence,
-        believed: case.believed.clone(),
+        nominal: case.nominal.clone(),
         tolerated: case.tolerated.iter().map(Free::within_sheet).collect(),
         candidates: case.candidates.clone(),
         shown: case.shown.clone(),
@@ -329,11 +329,11 @@ fn unseen_errors(
     if measured.iter().flatten().all(|value| value.is_nan()) {
         return None;
     }
-    clean::<Device>(&inputs.time, &mut measured, &case.noise, &case.believed);
+    clean::<Device>(&inputs.time, &mut measured, &case.noise, &case.nominal);
     for readings in &mut measured {
         readings[..inputs.initial.samples()].fill(f64::NAN);
     }
-    let models = [&case.believed, baseline, &best.fit.prediction.plant];
+    let models = [&case.nominal, baseline, &best.fit.prediction.plant];
     let predictions = models.map(|plant| simulate(plant, inputs).readings);
     let error = |channel: Channel, predicted: &[Vec<f64>; CHANNELS.len()]| {
         let index = channel as usize;
@@ -343,10 +343,10 @@ fn unseen_errors(
         ErrorSize::of(&residuals, noise)
     };
     let channels = CHANNELS.into_iter().filter_map(|channel| {
-        let [believed, before, after] = predictions.each_ref().map(|p| error(channel, p));
+        let [nominal, before, after] = predictions.each_ref().map(|p| error(channel, p));
         Some(Unseen {
             channel,
-            believed: believed?,
+            nominal: nominal?,
             before: before?,
             after: after?,
         })

@@ -307,7 +307,7 @@ impl Limit {
 #[derive(Debug)]
 pub enum Start<'a, S: Subject = Device> {
     /// Where it was; what is tolerated from what was believed, because a model that lacks something bends it out of shape.
-    Believed,
+    Nominal,
     /// Where it was.
     Here,
     /// Where another description stands: impacts make many minima, and a fit comes to rest in one of them. What another gains by having come to a better
@@ -341,7 +341,7 @@ pub struct Refit<'a, S: Subject = Device> {
 impl<'a, S: Subject> Refit<'a, S> {
     /// The full fit from where it was.
     pub const FULL: Self = Self {
-        start: Start::Believed,
+        start: Start::Nominal,
         stages: FULL,
         limit: Limit::FULL,
     };
@@ -375,7 +375,7 @@ impl<'a, S: Subject> Refit<'a, S> {
         match self.start {
             Start::Here => here.collect(),
             Start::Where(there) => here.map(|f| f.from_where(there)).collect(),
-            Start::Believed => here
+            Start::Nominal => here
                 .map(|f| match f.prior {
                     Prior::Normal { mean, .. } => f.from(mean),
                     Prior::Flat | Prior::Settled { .. } => f,

@@ -31,7 +31,7 @@ pub struct Search<'a> {
     /// The recordings.
     pub evidence: &'a Evidence,
     /// The rig as believed.
-    pub believed: PlantParameters,
+    pub nominal: PlantParameters,
     /// Tolerated quantities.
     pub tolerated: Vec<Free>,
     /// Effects that may be at work.
@@ -76,7 +76,7 @@ impl Search<'_> {
         let effects = self.shown.iter().map(|shown| shown.effect).collect();
         let own = self.shown.iter().flat_map(|shown| &shown.numbers);
         let free: Vec<Free> = self.tolerated.iter().chain(own).copied().collect();
-        self.fitted(effects, (&self.believed, None), &free, ROUGH, Limit::of(15))
+        self.fitted(effects, (&self.nominal, None), &free, ROUGH, Limit::of(15))
     }
 
     pub(super) fn fitted(
@@ -118,7 +118,7 @@ impl Search<'_> {
 
     /// Penalty for the numbers of an effect: Schwarz's.
     pub fn penalty(&self, hypothesis: &Hypothesis) -> f64 {
-        let numbers = hypothesis.fit.free.len() - hypothesis.tolerated(&self.believed);
+        let numbers = hypothesis.fit.free.len() - hypothesis.tolerated(&self.nominal);
         numbers as f64 * (self.evidence.count() as f64).ln()
             + self.settings.look_elsewhere * hypothesis.effects.len() as f64
     }
@@ -284,7 +284,7 @@ impl Search<'_> {
     /// a part of the device that is the noise already.
     fn weighed(&self, full: &mut Vec<Hypothesis>, observer: &mut Observer<'_>) -> Self {
         let mut weighed = self.clone();
-        if self.believed.parts != DeviceParts::Whole {
+        if self.nominal.parts != DeviceParts::Whole {
             return weighed;
         }
         for round in 0..self.settings.rounds {
@@ -438,7 +438,7 @@ impl Search<'_> {
                 break;
             }
             let mut other = candidate.clone();
-            let own = other.numbers_of(&self.believed, other.effects.len() - 1);
+            let own = other.numbers_of(&self.nominal, other.effects.len() - 1);
             other.fit.values[own].copy_from_slice(&start);
             let refined = self.refit(&other, Refit::FULL);
             let left = refined.fit.cost() - self.evidence.count() as f64;
@@ -456,9 +456,9 @@ impl Search<'_> {
         let parameters = hypothesis
             .effects
             .iter()
-            .flat_map(|effect| effect.parameters(&self.believed));
+            .flat_map(|effect| effect.parameters(&self.nominal));
         let parameters: Vec<_> = parameters.collect();
-        let own = hypothesis.tolerated(&self.believed);
+        let own = hypothesis.tolerated(&self.nominal);
         for (index, parameter) in parameters.iter().enumerate() {
             let present = hypothesis.fit.values[own + index];
             let mut tried: Vec<Hypothesis> = parameter

@@ -90,7 +90,7 @@ pub(super) fn fit(residuals: Vec<f64>, column: Vec<f64>, value: f64) -> Fit {
 pub(super) fn search(evidence: &Evidence) -> Search<'_> {
     Search {
         evidence,
-        believed: plant(),
+        nominal: plant(),
         tolerated: Vec::new(),
         candidates: Vec::new(),
         shown: Vec::new(),

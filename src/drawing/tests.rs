@@ -48,7 +48,7 @@ fn plate() -> Scene {
 fn an_edge_is_drawn_in_the_colours_of_its_error_with_their_scale() {
     let scene = plate();
     let svg = edge(&scene).unwrap();
-    for told in [
+    for expected in [
         "−2 %",
         "+2 %",
         "as desired",
@@ -56,7 +56,7 @@ fn an_edge_is_drawn_in_the_colours_of_its_error_with_their_scale() {
         "mm</text>",
         "data:image/png;base64,",
     ] {
-        assert!(svg.contains(told), "{told}");
+        assert!(svg.contains(expected), "{expected}");
     }
     // Too much and too little once each along the edge, besides the ends of the legend's bar.
     let lines = |colour: &str| {

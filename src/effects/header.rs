@@ -195,7 +195,7 @@ mod tests {
         let is_part = |c: char| c.is_alphanumeric() || c == '_';
         for effect in kinds() {
             let header = effect.header();
-            let told: Vec<&str> = header.legend.split(|c| !is_part(c)).collect();
+            let words: Vec<&str> = header.legend.split(|c| !is_part(c)).collect();
             for symbol in (header.equation.iter()).flat_map(|line| line.split(|c| !is_part(c))) {
                 // Longer ones without an index are functions, or prose about the equation; what flows in or out is one symbol.
                 let is_letter = symbol.len() == 1 && symbol.starts_with(char::is_alphabetic);
@@ -204,12 +204,12 @@ mod tests {
                 }
                 let stem = symbol.trim_end_matches("_in").trim_end_matches("_out");
                 let differential = symbol.strip_prefix('d').unwrap_or(symbol);
-                let known = |told: &&str| {
-                    [symbol, stem, differential].contains(told)
-                        || (symbol.ends_with('_') && told.starts_with(symbol))
+                let known = |words: &&str| {
+                    [symbol, stem, differential].contains(words)
+                        || (symbol.ends_with('_') && words.starts_with(symbol))
                 };
                 assert!(
-                    told.iter().any(known),
+                    words.iter().any(known),
                     "{effect:?}: {symbol} is not in its legend"
                 );
             }

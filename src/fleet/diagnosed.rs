@@ -143,7 +143,7 @@ fn fill(
             .effects
             .push((effect.name.to_owned(), reported.collect()));
         let Some(input) = case.input() else { continue };
-        let parameters = effect.parameters(&input.believed);
+        let parameters = effect.parameters(&input.nominal);
         let value = |name: &str| numbers.iter().find(|n| n.name == name).map(|n| n.value);
         let values: Option<Vec<f64>> = parameters.iter().map(|p| value(p.quantity.name)).collect();
         if let (Some(values), None) = (values, effect.phase) {

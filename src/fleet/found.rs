@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::diagnosed::{Diagnosed, NumberFound, Started};
 use super::{Change, ChangeKind, Layout, change, date_of_day, trend};
 use crate::quantity::counted;
-use crate::quantity::spoken::{number, spoken};
+use crate::quantity::display_name::{display_name, number};
 use crate::recording::provenance::SourceFile;
 use crate::stats::{NORMAL_MAD, median};
 
@@ -324,7 +324,7 @@ impl DeviceFound {
             )
         });
         let changed = self.changed.iter().map(|changed| {
-            let (name, unit) = spoken(&changed.number);
+            let (name, unit) = display_name(&changed.number);
             let of = match changed.effect.as_str() {
                 "" => String::new(),
                 effect => format!(" of {}", words(effect)),
@@ -485,7 +485,7 @@ fn unlike(devices: &[DeviceFound]) -> Vec<(String, String)> {
             let spread = NORMAL_MAD * median(off).unwrap_or(0.0);
             let spread = spread.max(median(scatter).unwrap_or(0.0));
             if spread > 0.0 && (own - middle).abs() > UNLIKE * spread {
-                let (name, unit) = spoken(&series.number);
+                let (name, unit) = display_name(&series.number);
                 let what = format!(
                     "{name} {} {unit}, the others {}",
                     number(own),

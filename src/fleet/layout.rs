@@ -54,7 +54,7 @@ pub enum FleetError {
     },
     /// An effect that no recording can be fitted with.
     #[error("{file}: {reason}")]
-    Believed {
+    Nominal {
         /// The file.
         file: String,
         /// Why.

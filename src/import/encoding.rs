@@ -24,7 +24,7 @@ const LOOKED_AT: usize = 1 << 16;
 
 /// Certainty of an encoding, and its reason.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Told {
+pub struct DetectedEncoding {
     /// Its name, as the map has it.
     pub name: String,
     /// Why.
@@ -49,11 +49,11 @@ pub(super) fn decode(
     path: &Path,
     bytes: &[u8],
     given: Option<&str>,
-) -> Result<(String, Told), ImportError> {
-    let (encoding, told) = match given.and_then(named) {
+) -> Result<(String, DetectedEncoding), ImportError> {
+    let (encoding, detected) = match given.and_then(named) {
         Some(encoding) => (
             encoding,
-            Told {
+            DetectedEncoding {
                 name: encoding.name().to_lowercase(),
                 reason: "the map says so",
                 is_certain: true,
@@ -74,25 +74,25 @@ pub(super) fn decode(
             ),
         });
     }
-    Ok((text.into_owned(), told))
+    Ok((text.into_owned(), detected))
 }
 
 /// The encoding that the bytes tell.
-fn tell(path: &Path, bytes: &[u8]) -> Result<(&'static Encoding, Told), ImportError> {
-    let told = |encoding: &'static Encoding, reason, is_certain| {
+fn tell(path: &Path, bytes: &[u8]) -> Result<(&'static Encoding, DetectedEncoding), ImportError> {
+    let detected = |encoding: &'static Encoding, reason, is_certain| {
         let name = encoding.name().to_lowercase();
-        let told = Told {
+        let detected = DetectedEncoding {
             name,
             reason,
             is_certain,
         };
-        Ok((encoding, told))
+        Ok((encoding, detected))
     };
     if let Some((encoding, _)) = Encoding::for_bom(bytes) {
-        return told(encoding, "it begins with the byte order mark", true);
+        return detected(encoding, "it begins with the byte order mark", true);
     }
     if let Some(encoding) = by_zeros(bytes) {
-        return told(encoding, "every other byte is zero", true);
+        return detected(encoding, "every other byte is zero", true);
     }
     if let Some(at) = bytes.iter().position(|byte| *byte == 0) {
         return Err(ImportError::Encoding {
@@ -104,12 +104,12 @@ fn tell(path: &Path, bytes: &[u8]) -> Result<(&'static Encoding, Told), ImportEr
         });
     }
     match std::str::from_utf8(bytes) {
-        Ok(_) if bytes.is_ascii() => return told(UTF_8, "plain ASCII", true),
-        Ok(_) => return told(UTF_8, "all of it is valid UTF-8", true),
+        Ok(_) if bytes.is_ascii() => return detected(UTF_8, "plain ASCII", true),
+        Ok(_) => return detected(UTF_8, "all of it is valid UTF-8", true),
         Err(_) => {}
     }
     match odd_character(bytes) {
-        None => told(
+        None => detected(
             WINDOWS_1252,
             "no UTF-8; read so, its letters and signs are those of western European logs",
             false,
@@ -196,9 +196,9 @@ mod tests {
 
     const TEXT: &str = "Zeit [s];Oberfläche [µm];Temp. [°C]\n0,001;12,5;20\n";
 
-    fn told(bytes: &[u8]) -> Result<(String, String), String> {
+    fn detected(bytes: &[u8]) -> Result<(String, String), String> {
         match decode(Path::new("log.csv"), bytes, None) {
-            Ok((text, told)) => Ok((text, told.name)),
+            Ok((text, detected)) => Ok((text, detected.name)),
             Err(error) => Err(error.to_string()),
         }
     }
@@ -222,7 +222,7 @@ mod tests {
             (big(), "utf-16be"),
             (marked(big(), b"\xfe\xff"), "utf-16be"),
         ] {
-            assert_eq!(told(&bytes), Ok((text(), name.to_owned())));
+            assert_eq!(detected(&bytes), Ok((text(), name.to_owned())));
         }
     }
 
@@ -237,7 +237,7 @@ mod tests {
             (b"t;\xc4\xe0\xe2\xeb\xe5\xed\xe8\xe5\n", "byte 0xC4"),
             (b"t;p\n0;1\n\x00\x01\x02", "line 3 holds a zero byte"),
         ] {
-            let said = told(bytes).unwrap_err();
+            let said = detected(bytes).unwrap_err();
             assert!(said.contains(says), "{said}\nlacks {says:?}");
             assert!(said.contains("encoding = \"windows-1252\""), "{said}");
         }

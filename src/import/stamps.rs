@@ -132,7 +132,7 @@ pub(super) fn nanoseconds(stamps: &[String], reading: Reading) -> Result<Vec<i64
     set_two_numbers(&mut parsed, reading.two_numbers)?;
     let order = match reading.order {
         Some(order) => Some(order),
-        None => told_order(&parsed, reading.year)?,
+        None => stated_order(&parsed, reading.year)?,
     };
     let mut times: Vec<i64> = Vec::with_capacity(parsed.len());
     let mut passed = 0;
@@ -225,7 +225,7 @@ fn unknown(text: &str) -> String {
 }
 
 /// The order of all dates together; none where there are none.
-fn told_order(stamps: &[Stamp], year: Option<i32>) -> Result<Option<DateOrder>, Unread> {
+fn stated_order(stamps: &[Stamp], year: Option<i32>) -> Result<Option<DateOrder>, Unread> {
     let dates = || {
         let all = stamps.iter().enumerate();
         all.filter_map(|(index, stamp)| Some((index, stamp.date?)))

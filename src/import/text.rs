@@ -4,7 +4,7 @@ use std::path::Path;
 
 use csv::StringRecord;
 
-use super::encoding::{Told, decode};
+use super::encoding::{DetectedEncoding, decode};
 use super::error::ImportError;
 use super::map::Separator;
 use super::packed::text_bytes;
@@ -51,9 +51,12 @@ impl Sheet {
 }
 
 /// A text's content in its encoding, its lines ended alike.
-pub(super) fn content(path: &Path, encoding: Option<&str>) -> Result<(String, Told), ImportError> {
+pub(super) fn content(
+    path: &Path,
+    encoding: Option<&str>,
+) -> Result<(String, DetectedEncoding), ImportError> {
     let bytes = text_bytes(path)?;
-    let (text, told) = decode(path, &bytes, encoding)?;
+    let (text, detected) = decode(path, &bytes, encoding)?;
     // Of a line that ends with both, the reader counts the end to the next one.
     let text = text.replace("\r\n", "\n");
     let text = if text.contains('\n') {
@@ -61,7 +64,7 @@ pub(super) fn content(path: &Path, encoding: Option<&str>) -> Result<(String, To
     } else {
         text.replace('\r', "\n")
     };
-    Ok((text, told))
+    Ok((text, detected))
 }
 
 /// The fields of one line.

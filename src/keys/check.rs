@@ -113,7 +113,7 @@ impl<'a> Section<'a> {
     pub fn refuse(&self, key: &str, found: String, expected: String) -> ScenarioError {
         let key = join(&self.table, key);
         ScenarioError::Value {
-            place: self.document.place(&key),
+            location: self.document.location(&key),
             key,
             found,
             expected,
@@ -164,12 +164,12 @@ impl<'a> Section<'a> {
 
     /// Refuses that a key is absent.
     pub fn missing(&self, key: &str, expected: &str) -> ScenarioError {
-        let place = self.document.place(&self.table);
+        let location = self.document.location(&self.table);
         let (above, _) = self.table.rsplit_once('.').unwrap_or_default();
         ScenarioError::MissingKey {
-            place: match place.position {
-                Some(_) => place,
-                None => self.document.place(above),
+            location: match location.position {
+                Some(_) => location,
+                None => self.document.location(above),
             },
             key: join(&self.table, key),
             expected: expected.to_owned(),
@@ -179,7 +179,7 @@ impl<'a> Section<'a> {
     /// Refuses that the table itself, or the key it stands for, is present.
     pub fn misplaced_itself(&self, reason: String) -> ScenarioError {
         ScenarioError::Misplaced {
-            place: self.document.place(&self.table),
+            location: self.document.location(&self.table),
             key: self.table.clone(),
             reason,
         }
@@ -189,7 +189,7 @@ impl<'a> Section<'a> {
     pub fn misplaced(&self, key: &str, reason: String) -> ScenarioError {
         let key = join(&self.table, key);
         ScenarioError::Misplaced {
-            place: self.document.place(&key),
+            location: self.document.location(&key),
             key,
             reason,
         }

@@ -7,7 +7,7 @@ use serde::Deserialize;
 use toml::de::{DeTable, DeValue};
 
 use super::declaration::{Key, Table, names, tables};
-use super::error::{Excerpt, Place, ScenarioError};
+use super::error::{Excerpt, Location, ScenarioError};
 use super::suggestion::{Sections, advice, is_table, join, split};
 use crate::unit::Unit;
 
@@ -57,10 +57,10 @@ pub(crate) fn read_text(file: &Path) -> Result<String, ScenarioError> {
 }
 
 /// Where a key stands in a file that has been read before; none if it does not stand there.
-pub(crate) fn place_of_key(file: &Path, key: &str, schema: u32) -> Option<Place> {
+pub(crate) fn location_of_key(file: &Path, key: &str, schema: u32) -> Option<Location> {
     let text = read_text(file).ok()?;
-    let place = Document::new(file, &text, schema).ok()?.place(key);
-    place.position.is_some().then_some(place)
+    let location = Document::new(file, &text, schema).ok()?.location(key);
+    location.position.is_some().then_some(location)
 }
 
 impl<'a> Document<'a> {
@@ -73,7 +73,7 @@ impl<'a> Document<'a> {
             entries: Vec::new(),
         };
         let table = DeTable::parse(text).map_err(|error| ScenarioError::Syntax {
-            place: document.place_of(error.span().unwrap_or(text.len()..text.len())),
+            location: document.location_of(error.span().unwrap_or(text.len()..text.len())),
             reason: error.message().to_owned(),
         })?;
         note_table("", table.get_ref(), &mut document.entries);
@@ -84,7 +84,7 @@ impl<'a> Document<'a> {
         {
             if !(1..=i64::from(schema)).contains(&found) {
                 return Err(ScenarioError::Schema {
-                    place: document.place_of(value.span()),
+                    location: document.location_of(value.span()),
                     found,
                     expected: schema,
                 });
@@ -123,7 +123,7 @@ impl<'a> Document<'a> {
             let unit = Unit::of_key(name);
             if !(low..=high).contains(&value) {
                 return Err(ScenarioError::Value {
-                    place: self.place(&entry.key),
+                    location: self.location(&entry.key),
                     key: entry.key.clone(),
                     found: unit.show(value),
                     expected: unit.show_range(low..=high),
@@ -148,9 +148,9 @@ impl<'a> Document<'a> {
     }
 
     /// Place of a part of a text that is a key's value, by its bytes in the text; of the whole where it is written with escapes.
-    pub fn place_in_text(&self, key: &str, part: &Range<usize>) -> Place {
+    pub fn location_in_text(&self, key: &str, part: &Range<usize>) -> Location {
         let Some(entry) = self.entries.iter().find(|entry| entry.key == key) else {
-            return self.place(key);
+            return self.location(key);
         };
         let value = entry.value_span.clone();
         let written = self.text.get(value.clone()).unwrap_or_default();
@@ -160,10 +160,10 @@ impl<'a> Document<'a> {
                 .iter()
                 .any(|quote| written.starts_with(quote))
         {
-            return self.place(key);
+            return self.location(key);
         }
         let start = value.start + 1;
-        self.place_of(start + part.start..(start + part.end).min(value.end))
+        self.location_of(start + part.start..(start + part.end).min(value.end))
     }
 
     /// Folder that relative paths in the file start from.
@@ -172,16 +172,16 @@ impl<'a> Document<'a> {
     }
 
     /// Place of a key, or of the file alone for a key that it leaves out.
-    pub fn place(&self, key: &str) -> Place {
+    pub fn location(&self, key: &str) -> Location {
         match self.entries.iter().find(|entry| entry.key == key) {
             Some(entry) => {
                 let [key, value] = [&entry.key_span, &entry.value_span];
                 let both = key.start..value.end.max(key.end);
                 // The value of a table begins with its heading, which holds the key.
                 let beside = value.start >= key.end && !self.text[both.clone()].contains('\n');
-                self.place_of(if beside { both } else { key.clone() })
+                self.location_of(if beside { both } else { key.clone() })
             }
-            None => Place {
+            None => Location {
                 file: self.file.to_owned(),
                 position: None,
                 excerpt: None,
@@ -190,10 +190,10 @@ impl<'a> Document<'a> {
     }
 
     /// Place of a key that means nothing, whatever its value is.
-    pub fn key_place(&self, key: &str) -> Place {
+    pub fn key_location(&self, key: &str) -> Location {
         match self.entries.iter().find(|entry| entry.key == key) {
-            Some(entry) => self.place_of(entry.key_span.clone()),
-            None => self.place(key),
+            Some(entry) => self.location_of(entry.key_span.clone()),
+            None => self.location(key),
         }
     }
 
@@ -209,13 +209,13 @@ impl<'a> Document<'a> {
     }
 
     /// Lines and columns count from 1, columns in characters.
-    fn place_of(&self, span: Range<usize>) -> Place {
+    fn location_of(&self, span: Range<usize>) -> Location {
         let start = self.text.floor_char_boundary(span.start);
         let before = &self.text[..start];
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
         let line = self.text[line_start..].lines().next().unwrap_or_default();
         let end = self.text.floor_char_boundary(span.end.max(start)) - line_start;
-        Place {
+        Location {
             file: self.file.to_owned(),
             position: Some((
                 before.matches('\n').count() as u32 + 1,
@@ -232,7 +232,7 @@ impl<'a> Document<'a> {
     fn explain(&self, error: &toml::de::Error, sections: &Sections) -> ScenarioError {
         let message = error.message();
         let span = error.span().unwrap_or(0..0);
-        let place = self.place_of(span.clone());
+        let location = self.location_of(span.clone());
         if message.starts_with("unknown field `") {
             let key = self
                 .entries
@@ -240,7 +240,11 @@ impl<'a> Document<'a> {
                 .find(|entry| entry.key_span == span)
                 .map_or(self.text[span].to_owned(), |entry| entry.key.clone());
             let advice = advice(&key, sections);
-            return ScenarioError::UnknownKey { place, key, advice };
+            return ScenarioError::UnknownKey {
+                location,
+                key,
+                advice,
+            };
         }
         let owner = self.owner(&span);
         if let Some(field) = message.strip_prefix("missing field `") {
@@ -248,14 +252,14 @@ impl<'a> Document<'a> {
             let key = join(&owner, field);
             let expected = expected_of_missing(&key, field, sections);
             return ScenarioError::MissingKey {
-                place,
+                location,
                 key,
                 expected,
             };
         }
         let (_, expected) = message.rsplit_once("expected ").unwrap_or(("", message));
         ScenarioError::Value {
-            place,
+            location,
             expected: expected_value(expected, &owner, sections),
             key: owner,
             found: excerpt(&self.text[span]),

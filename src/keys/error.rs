@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 /// A place in a file, as editors understand it: `file:line:column`.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Place {
+pub struct Location {
     /// The file.
     pub file: PathBuf,
     /// Line and column, both from 1; none for a value that the file leaves to its default.
@@ -24,7 +24,7 @@ pub struct Excerpt {
     pub meant: Range<usize>,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Location {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "{}", self.file.display())?;
         match self.position {
@@ -53,10 +53,10 @@ pub enum ScenarioError {
         source: std::io::Error,
     },
     /// The file is not TOML.
-    #[error("{place}: not valid TOML: {reason}")]
+    #[error("{location}: not valid TOML: {reason}")]
     Syntax {
         /// Where.
-        place: Place,
+        location: Location,
         /// The fault and the expected form.
         reason: String,
     },
@@ -71,40 +71,40 @@ pub enum ScenarioError {
         expected: &'static str,
     },
     /// The file is written for another version of this format.
-    #[error("{place}: schema is {found}, expected {}", versions(*expected))]
+    #[error("{location}: schema is {found}, expected {}", versions(*expected))]
     Schema {
         /// Where.
-        place: Place,
+        location: Location,
         /// Version found.
         found: i64,
         /// Version that this program reads.
         expected: u32,
     },
     /// A key that means nothing here.
-    #[error("{place}: unknown key `{key}`; {advice}")]
+    #[error("{location}: unknown key `{key}`; {advice}")]
     UnknownKey {
         /// Where.
-        place: Place,
+        location: Location,
         /// The key.
         key: String,
         /// Which key was probably meant.
         advice: String,
     },
     /// A key without default is absent.
-    #[error("{place}: `{key}` is missing, expected {expected}")]
+    #[error("{location}: `{key}` is missing, expected {expected}")]
     MissingKey {
         /// The table that lacks it.
-        place: Place,
+        location: Location,
         /// The key.
         key: String,
         /// Its expected content.
         expected: String,
     },
     /// A value of another type, not among the choices, or at odds with another one.
-    #[error("{place}: `{key}` is {found}, expected {expected}")]
+    #[error("{location}: `{key}` is {found}, expected {expected}")]
     Value {
         /// Where.
-        place: Place,
+        location: Location,
         /// The key.
         key: String,
         /// The value as written, unit included.
@@ -113,20 +113,20 @@ pub enum ScenarioError {
         expected: String,
     },
     /// A law of a user's own that cannot be.
-    #[error("{place}: `{key}`, {reason}")]
+    #[error("{location}: `{key}`, {reason}")]
     Expression {
         /// Where.
-        place: Place,
+        location: Location,
         /// The key.
         key: String,
         /// The fault, and the part of it that has it.
         reason: String,
     },
     /// A key that only has a meaning together with another one.
-    #[error("{place}: `{key}` cannot stand here: {reason}")]
+    #[error("{location}: `{key}` cannot stand here: {reason}")]
     Misplaced {
         /// Where.
-        place: Place,
+        location: Location,
         /// The key.
         key: String,
         /// Why not.
@@ -156,29 +156,29 @@ impl ScenarioError {
     }
 
     /// Where it is, if that is a place in a file.
-    pub fn place(&self) -> Option<&Place> {
+    pub fn location(&self) -> Option<&Location> {
         match self {
-            Self::Syntax { place, .. }
-            | Self::Schema { place, .. }
-            | Self::UnknownKey { place, .. }
-            | Self::MissingKey { place, .. }
-            | Self::Value { place, .. }
-            | Self::Expression { place, .. }
-            | Self::Misplaced { place, .. } => Some(place),
+            Self::Syntax { location, .. }
+            | Self::Schema { location, .. }
+            | Self::UnknownKey { location, .. }
+            | Self::MissingKey { location, .. }
+            | Self::Value { location, .. }
+            | Self::Expression { location, .. }
+            | Self::Misplaced { location, .. } => Some(location),
             Self::NoSuchFile { .. } | Self::Read { .. } | Self::OtherKind { .. } => None,
         }
     }
 
     /// The same at another place, if it has one.
-    pub(crate) fn at(mut self, other: Place) -> Self {
+    pub(crate) fn at(mut self, other: Location) -> Self {
         match &mut self {
-            Self::Syntax { place, .. }
-            | Self::Schema { place, .. }
-            | Self::UnknownKey { place, .. }
-            | Self::MissingKey { place, .. }
-            | Self::Value { place, .. }
-            | Self::Expression { place, .. }
-            | Self::Misplaced { place, .. } => *place = other,
+            Self::Syntax { location, .. }
+            | Self::Schema { location, .. }
+            | Self::UnknownKey { location, .. }
+            | Self::MissingKey { location, .. }
+            | Self::Value { location, .. }
+            | Self::Expression { location, .. }
+            | Self::Misplaced { location, .. } => *location = other,
             Self::NoSuchFile { .. } | Self::Read { .. } | Self::OtherKind { .. } => {}
         }
         self

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::CHANNELS;
 use super::concealed::Concealed;
 use super::conditions::{Conditions, IMPERFECTIONS};
-use super::draw::{Believed, TOLERANCES, stream, toleranced};
+use super::draw::{NominalRig, TOLERANCES, stream, toleranced};
 use super::effects::{LabEffect, Scene, effect};
 use super::law::Law;
 use super::programme::Programme;
@@ -37,7 +37,7 @@ pub struct Recipe {
 #[derive(Debug, Clone, PartialEq)]
 pub struct LaboratoryCase {
     /// The device as believed.
-    pub believed: Believed,
+    pub nominal: NominalRig,
     /// Programmes carried out; the last one is to be predicted.
     pub programmes: Vec<Programme>,
     /// Readings in each, in the order of [`CHANNELS`].
@@ -50,7 +50,7 @@ pub struct LaboratoryCase {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Session {
     /// The device as believed: that of the type.
-    pub believed: Believed,
+    pub nominal: NominalRig,
     /// Programmes carried out.
     pub programmes: Vec<Programme>,
     /// Readings in each, in the order of [`CHANNELS`].
@@ -65,7 +65,7 @@ struct Pair {
 
 impl Pair {
     /// Numbers of the rig that are off stand in the real one; without the effect they are what is believed.
-    fn new(believed: &LaboratoryRig, drawn: LaboratoryRig, concealed: &Concealed) -> Self {
+    fn new(nominal: &LaboratoryRig, drawn: LaboratoryRig, concealed: &Concealed) -> Self {
         type Place = fn(&mut LaboratoryRig) -> &mut f64;
         let (mut bare, mut real) = (drawn.clone(), drawn);
         let places: [(Option<f64>, Place); 6] = [
@@ -76,7 +76,7 @@ impl Pair {
             (concealed.gain, |r| &mut r.gain),
             (concealed.contact_stiffness, |r| &mut r.contact_stiffness),
         ];
-        let mut nominal = believed.clone();
+        let mut nominal = nominal.clone();
         for (value, place) in places {
             if let Some(value) = value {
                 *place(&mut real) = value;
@@ -89,7 +89,7 @@ impl Pair {
 
 /// Result of a recipe before anything is measured.
 struct Setting {
-    believed: Believed,
+    nominal: NominalRig,
     programmes: Vec<Programme>,
     pair: Pair,
     concealed: Concealed,
@@ -126,13 +126,13 @@ impl Recipe {
         let real = setting.run(setting.programmes.len())?;
         let (mismatch, shows) = self.shown(&setting, &real)?;
         let Setting {
-            believed,
+            nominal,
             programmes,
             pair,
             effects,
             ..
         } = setting;
-        let sheet = believed.rig.noise;
+        let sheet = nominal.rig.noise;
         let noise = sheet.map(|sheet| self.conditions.noise * sheet);
         let measured = self.measure(noise, &real, 0);
         let mut rig = pair.real;
@@ -150,7 +150,7 @@ impl Recipe {
                 shows,
                 seed: self.seed,
             },
-            believed,
+            nominal,
             programmes,
             measured,
         })
@@ -167,11 +167,11 @@ impl Recipe {
         let mut setting = self.setting_of(device)?;
         let seen = setting.programmes.len() - 1;
         let real = setting.run(seen)?;
-        let noise = (setting.believed.rig.noise).map(|sheet| self.conditions.noise * sheet);
+        let noise = (setting.nominal.rig.noise).map(|sheet| self.conditions.noise * sheet);
         setting.programmes.truncate(seen);
         Ok(Session {
             measured: self.measure(noise, &real, turn),
-            believed: setting.believed,
+            nominal: setting.nominal,
             programmes: setting.programmes,
         })
     }
@@ -221,7 +221,7 @@ impl Recipe {
             ..self.clone()
         }
         .setting()?;
-        let Believed { rig, tolerances } = &setting.believed;
+        let NominalRig { rig, tolerances } = &setting.nominal;
         let seen = &setting.programmes[..setting.programmes.len() - 1];
         Eye::new(
             &setting.pair.real,
@@ -240,7 +240,7 @@ impl Recipe {
 
     /// The device as believed.
     pub(super) fn rig(&self) -> LaboratoryRig {
-        Believed::draw(self.seed).rig
+        NominalRig::draw(self.seed).rig
     }
 
     fn setting(&self) -> Result<Setting, LaboratoryError> {
@@ -249,10 +249,10 @@ impl Recipe {
 
     /// The same of another device of the type: its numbers lie elsewhere within their tolerances.
     fn setting_of(&self, device: u64) -> Result<Setting, LaboratoryError> {
-        let mut believed = Believed::draw(self.seed);
-        self.conditions.on_believed(&mut believed);
-        let drawn = believed.real(self.seed + device);
-        let mut programmes = believed.programmes(self.seed, self.duration).to_vec();
+        let mut nominal = NominalRig::draw(self.seed);
+        self.conditions.on_nominal(&mut nominal);
+        let drawn = nominal.real(self.seed + device);
+        let mut programmes = nominal.programmes(self.seed, self.duration).to_vec();
         if let Some(dirt) = &self.conditions.dirt {
             let rng = &mut stream(self.seed, 4);
             for programme in &mut programmes {
@@ -268,7 +268,7 @@ impl Recipe {
             let effect = effect(name).expect("an effect of the catalogue");
             let numbers = (effect.conceal)(&mut Scene {
                 rng,
-                believed: &believed.rig,
+                nominal: &nominal.rig,
                 peak_force,
                 share: *share,
                 concealed: &mut concealed,
@@ -281,8 +281,8 @@ impl Recipe {
         Ok(Setting {
             conditions: self.conditions,
             seed: self.seed,
-            pair: Pair::new(&believed.rig, drawn, &concealed),
-            believed,
+            pair: Pair::new(&nominal.rig, drawn, &concealed),
+            nominal,
             programmes,
             concealed,
             effects,
@@ -311,7 +311,7 @@ impl Recipe {
 
     /// The device without the effects, as its owner sees it in the recordings to diagnose from.
     fn eye(setting: &Setting) -> Result<Eye, LaboratoryError> {
-        let Believed { rig, tolerances } = &setting.believed;
+        let NominalRig { rig, tolerances } = &setting.nominal;
         let seen = &setting.programmes[..setting.programmes.len() - 1];
         let nothing = Concealed::default();
         Eye::new(&setting.pair.bare, &nothing, rig, tolerances, seen)

@@ -8,7 +8,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::concealed::{Concealed, Seals, Swing};
 use super::dirt::Dirt;
-use super::draw::{Believed, stream};
+use super::draw::{NominalRig, stream};
 use super::programme::Programme;
 use super::rig::LaboratoryRig;
 use super::sensors::between;
@@ -90,8 +90,8 @@ impl Conditions {
         self.imperfection >= ALL_KINDS && IMPERFECTIONS.contains(&effect)
     }
 
-    pub(super) fn on_believed(&self, believed: &mut Believed) {
-        believed.rig.rate = self.rate.unwrap_or(believed.rig.rate);
+    pub(super) fn on_nominal(&self, nominal: &mut NominalRig) {
+        nominal.rig.rate = self.rate.unwrap_or(nominal.rig.rate);
     }
 
     /// All programmes but the last, which is to be predicted, lose their beginning.
@@ -203,7 +203,7 @@ mod tests {
         let pairs = (one.measured[0][channel].iter()).zip(&other.measured[0][channel]);
         let squares: Vec<f64> = pairs.map(|(a, b)| (a - b).powi(2)).collect();
         let mean = squares.iter().sum::<f64>() / squares.len() as f64;
-        mean.sqrt() / one.believed.rig.noise[channel]
+        mean.sqrt() / one.nominal.rig.noise[channel]
     }
 
     #[test]
@@ -249,7 +249,7 @@ mod tests {
         );
         // The same numbers drawn, twice as large: what is left between the two is noise once over.
         assert!((apart(&loud, &ideal, 0) - 1.0).abs() < 0.1);
-        assert_eq!(loud.believed.rig.noise, ideal.believed.rig.noise);
+        assert_eq!(loud.nominal.rig.noise, ideal.nominal.rig.noise);
         let other = case(
             Conditions {
                 missing: Some(3),
@@ -263,6 +263,6 @@ mod tests {
         assert!(other.programmes[0].times[0] >= 1.0 && other.programmes[3].times[0] == 0.0);
         let from = ideal.measured[3][2].iter().zip(&other.measured[3][2]);
         let moved = from.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        assert!(moved > 10.0 * ideal.believed.rig.noise[2], "{moved}");
+        assert!(moved > 10.0 * ideal.nominal.rig.noise[2], "{moved}");
     }
 }

@@ -21,7 +21,7 @@ pub const TOLERANCES: [(&str, f64); 8] = [
 
 /// A device as believed, with its tolerances.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Believed {
+pub struct NominalRig {
     /// The numbers.
     pub rig: LaboratoryRig,
     /// Relative tolerances, in the order of [`TOLERANCES`].
@@ -49,7 +49,7 @@ pub(super) fn stream(seed: u64, purpose: u64) -> ChaCha8Rng {
     rng
 }
 
-impl Believed {
+impl NominalRig {
     /// A device at random.
     pub fn draw(seed: u64) -> Self {
         let rng = &mut stream(seed, 1);

@@ -28,7 +28,7 @@ pub(super) struct Scene<'a> {
     /// Random numbers.
     pub rng: &'a mut ChaCha8Rng,
     /// The device as believed.
-    pub believed: &'a LaboratoryRig,
+    pub nominal: &'a LaboratoryRig,
     /// Largest force without the effect [N].
     pub peak_force: f64,
     /// Share of the largest plausible effect [1].
@@ -151,12 +151,12 @@ pub static EFFECTS: [LabEffect; 34] = [
     listed("axial_force_offset", "force_balance", |s| {
         let (force, sign) = (s.sized(15.0), s.sign());
         // A device that is pulled off its stop does not start at rest.
-        let rests = s.believed.weight() + force < -1.0;
+        let rests = s.nominal.weight() + force < -1.0;
         s.concealed.axial_force = if rests { sign * force } else { -force };
         vec![("force_n", s.concealed.axial_force)]
     }),
     listed("moving_mass_error", "force_balance", |s| {
-        let mass = s.off(s.believed.mass, 0.35);
+        let mass = s.off(s.nominal.mass, 0.35);
         s.concealed.mass = Some(mass);
         vec![("mass_kg", mass)]
     }),
@@ -166,11 +166,11 @@ pub static EFFECTS: [LabEffect; 34] = [
         vec![("damping_n_s_per_m", damping), ("length_m", length)]
     }),
     listed("cross_piston_leakage", "chambers", |s| {
-        s.concealed.cross_leak = s.sized(0.25 * s.believed.supply_orifice);
+        s.concealed.cross_leak = s.sized(0.25 * s.nominal.supply_orifice);
         vec![("orifice_area_m2", s.concealed.cross_leak)]
     }),
     listed("external_leakage", "chambers", |s| {
-        s.concealed.external_leak = s.sized(0.3 * s.believed.supply_orifice);
+        s.concealed.external_leak = s.sized(0.3 * s.nominal.supply_orifice);
         vec![("orifice_area_m2", s.concealed.external_leak)]
     }),
     // From nearly adiabatic towards isothermal.
@@ -180,17 +180,17 @@ pub static EFFECTS: [LabEffect; 34] = [
         vec![("wall_conductance_w_per_k", conductance)]
     }),
     listed("exhaust_restriction", "chambers", |s| {
-        let area = s.off(s.believed.exhaust_orifice, 0.6);
+        let area = s.off(s.nominal.exhaust_orifice, 0.6);
         s.concealed.exhaust_orifice = Some(area);
         vec![("orifice_area_m2", area)]
     }),
     listed("supply_restriction", "chambers", |s| {
-        let area = s.off(s.believed.supply_orifice, 0.6);
+        let area = s.off(s.nominal.supply_orifice, 0.6);
         s.concealed.supply_orifice = Some(area);
         vec![("orifice_area_m2", area)]
     }),
     listed("extra_dead_volume", "chambers", |s| {
-        let volume = s.believed.dead_volume * s.sized(0.8).exp();
+        let volume = s.nominal.dead_volume * s.sized(0.8).exp();
         s.concealed.dead_volume = Some(volume);
         vec![("dead_volume_m3", volume)]
     }),
@@ -216,7 +216,7 @@ pub static EFFECTS: [LabEffect; 34] = [
         vec![("delay_s", s.concealed.dead_time)]
     }),
     listed("regulator_gain_error", "regulator", |s| {
-        let gain = s.off(s.believed.gain, 0.08);
+        let gain = s.off(s.nominal.gain, 0.08);
         s.concealed.gain = Some(gain);
         vec![("gain", gain)]
     }),
@@ -232,7 +232,7 @@ pub static EFFECTS: [LabEffect; 34] = [
     // Less and less of an overshoot, until it is the first-order lag with another one far faster: 2 zeta / w comes to the time constant.
     listed("regulator_second_order", "regulator", |s| {
         let damping = s.by_power(0.3, -0.5);
-        let frequency = (2.0 * damping).max(1.6) / s.believed.time_constant;
+        let frequency = (2.0 * damping).max(1.6) / s.nominal.time_constant;
         s.concealed.second_order = Some([frequency, damping]);
         vec![
             ("natural_frequency_rad_per_s", frequency),
@@ -244,7 +244,7 @@ pub static EFFECTS: [LabEffect; 34] = [
         vec![("delay_s", s.concealed.switching_delay)]
     }),
     listed("contact_stiffness_error", "contact", |s| {
-        let stiffness = s.off(s.believed.contact_stiffness, 1.5);
+        let stiffness = s.off(s.nominal.contact_stiffness, 1.5);
         s.concealed.contact_stiffness = Some(stiffness);
         vec![("stiffness_n_per_m", stiffness)]
     }),
@@ -252,7 +252,7 @@ pub static EFFECTS: [LabEffect; 34] = [
     listed("hertzian_contact", "contact", |s| {
         const AT: f64 = 100.0;
         let share = s.by_power(0.2, -0.3);
-        let depth = AT / (share * s.believed.contact_stiffness);
+        let depth = AT / (share * s.nominal.contact_stiffness);
         let stiffness = AT / depth.powf(1.5);
         s.concealed.hertz = Some(stiffness);
         vec![("stiffness_n_per_m15", stiffness)]
@@ -308,7 +308,7 @@ pub static UNLISTED_EFFECTS: [LabEffect; 5] = [
     LabEffect {
         depends_on: &["stroke_m"],
         ..listed("sticky_spot", "force_balance", |s| {
-            let place = s.believed.stroke * s.rng.random_range(0.2..0.4);
+            let place = s.nominal.stroke * s.rng.random_range(0.2..0.4);
             s.concealed.sticky_spot = Some([s.sized(30.0), place, s.about(2e-3)]);
             Vec::new()
         })

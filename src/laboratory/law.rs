@@ -286,7 +286,7 @@ impl Law {
 #[cfg(test)]
 mod tests {
     use super::super::concealed::{Concealed, Seals};
-    use super::super::draw::Believed;
+    use super::super::draw::NominalRig;
     use super::super::rig::LaboratoryRig;
     use super::super::trajectory::{LaboratoryTrajectory, run};
     use super::*;
@@ -324,11 +324,11 @@ mod tests {
     }
 
     fn with(concealed: Concealed) -> (LaboratoryRig, LaboratoryTrajectory) {
-        let mut believed = Believed::draw(6);
-        believed.rig.gravity = -5.0;
-        let programme = &believed.programmes(6, 2.0)[1];
-        let trajectory = run(&believed.rig, &concealed, programme).unwrap();
-        (believed.rig, trajectory)
+        let mut nominal = NominalRig::draw(6);
+        nominal.rig.gravity = -5.0;
+        let programme = &nominal.programmes(6, 2.0)[1];
+        let trajectory = run(&nominal.rig, &concealed, programme).unwrap();
+        (nominal.rig, trajectory)
     }
 
     fn of(law: Law) -> Concealed {
@@ -479,9 +479,9 @@ mod tests {
         let give = 1.0 + 2e-6 * rig.contact_stiffness;
         softer.contact_stiffness /= give;
         softer.contact_damping /= give;
-        let mut believed = Believed::draw(6);
-        believed.rig.gravity = rig.gravity;
-        let programme = &believed.programmes(6, 2.0)[1];
+        let mut nominal = NominalRig::draw(6);
+        nominal.rig.gravity = rig.gravity;
+        let programme = &nominal.programmes(6, 2.0)[1];
         let alike = run(&softer, &Concealed::default(), programme).unwrap();
         let mut off: Vec<f64> = (found.readings[1].iter().zip(&alike.readings[1]))
             .map(|(a, b)| (a - b).abs())

@@ -515,26 +515,26 @@ fn left_by_listed(place: Place, rows: &[(f64, [f64; 10])]) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::draw::Believed;
+    use super::super::draw::NominalRig;
     use super::super::trajectory::run;
     use super::*;
     use std::collections::BTreeSet;
 
     #[test]
     fn all_places_and_kinds_are_drawn_of_variables_that_an_answer_may_name() {
-        let believed = Believed::draw(9);
-        let seen = &believed.programmes(9, 2.0)[..3];
+        let nominal = NominalRig::draw(9);
+        let seen = &nominal.programmes(9, 2.0)[..3];
         let nothing = super::super::Concealed::default();
         let bare: Vec<LaboratoryTrajectory> = seen
             .iter()
-            .map(|programme| run(&believed.rig, &nothing, programme).unwrap())
+            .map(|programme| run(&nominal.rig, &nothing, programme).unwrap())
             .collect();
         let mut places = BTreeSet::new();
         let mut forms = BTreeSet::new();
         for seed in 0..200 {
             let draw = || {
                 let rng = &mut stream(seed, 100);
-                drawn(choice(rng), rng, believed.rig.clone(), 2.0, &bare)
+                drawn(choice(rng), rng, nominal.rig.clone(), 2.0, &bare)
             };
             let (law, most) = draw();
             assert_eq!(draw().0, law);

@@ -32,7 +32,7 @@ pub use case::{LaboratoryCase, Recipe, Session};
 pub use concealed::{Concealed, Seals, Swing};
 pub use conditions::Conditions;
 pub use dirt::Dirt;
-pub use draw::{Believed, TOLERANCES};
+pub use draw::{NominalRig, TOLERANCES};
 pub use effects::{EFFECTS, LabEffect, UNLISTED_EFFECTS};
 pub use law::{Driver, Form, Law, Place};
 pub use law_draw::law_case;

@@ -297,7 +297,7 @@ const _: () = assert!(
 
 #[cfg(test)]
 mod tests {
-    use super::super::draw::Believed;
+    use super::super::draw::NominalRig;
     use super::*;
 
     fn programme(pressure: f64, times: Vec<f64>) -> Programme {
@@ -312,7 +312,7 @@ mod tests {
 
     #[test]
     fn sealed_chambers_keep_their_air_whatever_the_piston_does() {
-        let mut rig = Believed::draw(3).rig;
+        let mut rig = NominalRig::draw(3).rig;
         (rig.supply_orifice, rig.exhaust_orifice, rig.gravity) = (0.0, 0.0, 30.0);
         let concealed = Concealed {
             cross_leak: 1e-7,
@@ -329,7 +329,7 @@ mod tests {
 
     #[test]
     fn a_chamber_behind_a_choked_orifice_fills_at_a_constant_rate() {
-        let mut rig = Believed::draw(4).rig;
+        let mut rig = NominalRig::draw(4).rig;
         // Held on a hard stop, and a regulator that is there at once.
         (rig.gravity, rig.time_constant, rig.stop) = (-500.0, 1e-5, [1e9, 2e5]);
         let set = 8e5;
@@ -349,7 +349,7 @@ mod tests {
 
     #[test]
     fn air_that_keeps_its_heat_is_compressed_adiabatically() {
-        let mut rig = Believed::draw(5).rig;
+        let mut rig = NominalRig::draw(5).rig;
         (rig.supply_orifice, rig.exhaust_orifice, rig.gravity) = (0.0, 0.0, 30.0);
         let concealed = Concealed {
             wall_conductance: Some(0.0),
@@ -366,15 +366,15 @@ mod tests {
 
     #[test]
     fn a_late_stamp_is_the_force_of_that_time_before() {
-        let mut believed = Believed::draw(6);
-        believed.rig.gravity = -5.0;
-        let mut programme = believed.programmes(6, 2.0)[0].clone();
+        let mut nominal = NominalRig::draw(6);
+        nominal.rig.gravity = -5.0;
+        let mut programme = nominal.programmes(6, 2.0)[0].clone();
         let late = Concealed {
             force_late: 0.02,
             ..Concealed::default()
         };
-        let now = run(&believed.rig, &Concealed::default(), &programme).unwrap();
-        let then = run(&believed.rig, &late, &programme).unwrap();
+        let now = run(&nominal.rig, &Concealed::default(), &programme).unwrap();
+        let then = run(&nominal.rig, &late, &programme).unwrap();
         for i in 5..programme.times.len() {
             let off = then.readings[2][i] - now.readings[2][i - 5];
             assert!(
@@ -384,7 +384,7 @@ mod tests {
         }
         // The other way round: the programme's own times do not matter to what happens.
         programme.times.retain(|t| (t * 125.0).fract() < 1e-6);
-        let fewer = run(&believed.rig, &Concealed::default(), &programme).unwrap();
+        let fewer = run(&nominal.rig, &Concealed::default(), &programme).unwrap();
         let last = fewer.contact.len() - 1;
         let twin = now.contact[2 * last];
         assert!((fewer.contact[last] - twin).abs() < 1e-3 * (1.0 + twin));

@@ -40,7 +40,7 @@ impl Eye {
     pub fn new(
         bare: &LaboratoryRig,
         beside: &Concealed,
-        believed: &LaboratoryRig,
+        nominal: &LaboratoryRig,
         tolerances: &[f64; TOLERATED],
         programmes: &[Programme],
     ) -> Result<Self, LaboratoryError> {
@@ -60,7 +60,7 @@ impl Eye {
             columns: Vec::new(),
             inverse: SMatrix::identity(),
         };
-        let mut nominal = believed.clone();
+        let mut nominal = nominal.clone();
         let nominal = toleranced(&mut nominal).map(|value| *value);
         for (index, tolerance) in tolerances.iter().enumerate() {
             let deviation = tolerance * nominal[index] / 3f64.sqrt();

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::CHANNELS;
 use super::case::{LaboratoryCase, Session};
-use super::draw::Believed;
+use super::draw::NominalRig;
 use super::programme::Programme;
 use crate::recording::RecordingError;
 use crate::recording::atomic::write_text;
@@ -35,7 +35,7 @@ pub fn write_case(
         .collect();
     write_text(
         &folder.join("rig.toml"),
-        &rig_text(&case.believed, &names, &unseen.name),
+        &rig_text(&case.nominal, &names, &unseen.name),
     )?;
     for (programme, values) in seen.iter().zip(&case.measured) {
         write_measured(programme, values, folder)?;
@@ -77,7 +77,7 @@ pub fn write_session(
     }
     let names: Vec<&str> = session.programmes.iter().map(|p| p.name.as_str()).collect();
     match rig {
-        Some(file) => write_text(file, &rig_text(&session.believed, &names, "predict")),
+        Some(file) => write_text(file, &rig_text(&session.nominal, &names, "predict")),
         None => Ok(()),
     }
 }
@@ -125,8 +125,8 @@ fn plain(value: f64) -> String {
     format!("{value:?}")
 }
 
-fn rig_text(believed: &Believed, fit: &[&str], predict: &str) -> String {
-    let rig = &believed.rig;
+fn rig_text(nominal: &NominalRig, fit: &[&str], predict: &str) -> String {
+    let rig = &nominal.rig;
     let noise = CHANNELS.into_iter().zip(rig.noise.map(plain));
     let quoted: Vec<String> = fit.iter().map(|name| format!("\"{name}.csv\"")).collect();
     let mut text = String::from(
@@ -147,7 +147,7 @@ fn rig_text(believed: &Believed, fit: &[&str], predict: &str) -> String {
             ],
         ),
     ];
-    for (name, rows) in device_keys(believed).into_iter().chain(rest) {
+    for (name, rows) in device_keys(nominal).into_iter().chain(rest) {
         // Writing into a text cannot fail.
         let _ = writeln!(text, "\n[{name}]");
         for (key, value) in rows {
@@ -158,9 +158,9 @@ fn rig_text(believed: &Believed, fit: &[&str], predict: &str) -> String {
 }
 
 /// What is believed of device and contact.
-fn device_keys(believed: &Believed) -> [Keys<'static>; 6] {
-    let rig = &believed.rig;
-    let [volume, mass, gain, lag, supply, exhaust, stiffness, damping] = believed.tolerances;
+fn device_keys(nominal: &NominalRig) -> [Keys<'static>; 6] {
+    let rig = &nominal.rig;
+    let [volume, mass, gain, lag, supply, exhaust, stiffness, damping] = nominal.tolerances;
     let within =
         |value: f64, tolerance: f64| format!("{{ value = {value:?}, tolerance = {tolerance:?} }}");
     [

@@ -235,7 +235,7 @@ mod tests {
         let of_passes = [own(60.0), own(60.0), own(60.0)];
         validate_cell(&[], &of_passes).unwrap();
         let checks = check_cell(&summary, &[], &of_passes).unwrap();
-        let told = checks
+        let named = checks
             .iter()
             .map(|check| (check.pass, check.value, check.kept));
         let expected = [
@@ -243,7 +243,7 @@ mod tests {
             (Some(2), Some(50.0), true),
             (Some(3), None, false),
         ];
-        assert_eq!(told.collect::<Vec<_>>(), expected);
+        assert_eq!(named.collect::<Vec<_>>(), expected);
         assert_eq!(checks[1].name(), "pass 2: force_mean_n");
         let unknown = [vec![expectation("settling_time_s", None, Some(1.0))]];
         assert!(validate_cell(&[], &unknown).is_err());

@@ -30,14 +30,14 @@ pub fn prove(
     out: &Path,
     jobs: usize,
     diagnose: &Diagnose<'_>,
-    told: &(dyn Fn(usize, usize) + Sync),
+    progress: &(dyn Fn(usize, usize) + Sync),
 ) -> Result<ProofSummary, ProofError> {
     let folders = folders(cases, only)?;
     let done = AtomicUsize::new(0);
     let answers = queue::all(folders.len(), jobs, |index| {
         let (name, folder) = &folders[index];
         let answer = diagnose(folder, &out.join(name));
-        told(done.fetch_add(1, Ordering::Relaxed) + 1, folders.len());
+        progress(done.fetch_add(1, Ordering::Relaxed) + 1, folders.len());
         answer
     });
     let mut scores = Vec::new();

@@ -4,7 +4,7 @@
 //! sensors of such a cell resolve. What is not zero but finer than that is `<0.001`. Files keep every digit.
 
 pub mod binomial;
-pub mod spoken;
+pub mod display_name;
 
 /// Significant digits at most; forces near the desired one differ in the fourth.
 pub const DIGITS: usize = 4;
@@ -171,8 +171,8 @@ mod tests {
 
     #[test]
     fn one_is_not_told_as_many() {
-        let told = [0, 1, 2].map(|count| counted(count, "case"));
-        assert_eq!(told, ["0 cases", "1 case", "2 cases"]);
+        let counts = [0, 1, 2].map(|count| counted(count, "case"));
+        assert_eq!(counts, ["0 cases", "1 case", "2 cases"]);
     }
 
     #[test]

@@ -7,8 +7,8 @@ use super::cell::Scenario;
 use super::file::{Kind, KindOnly, SCHEMA};
 use super::load::from_document;
 use super::sections::{bench_sections, scenario_sections};
-use crate::keys::document::{Document, place_of_key, read_text};
-use crate::keys::error::{Place, ScenarioError};
+use crate::keys::document::{Document, location_of_key, read_text};
+use crate::keys::error::{Location, ScenarioError};
 use crate::keys::suggestion::Sections;
 
 /// A scenario of either kind.
@@ -51,13 +51,17 @@ pub(super) fn from_text(path: &Path, text: &str) -> Result<AnyScenario, Scenario
 /// Says of an unknown key at the top that the other kind of scenario has it, if so.
 fn name_kind(error: ScenarioError, other: &str, sections: &Sections) -> ScenarioError {
     match error {
-        ScenarioError::UnknownKey { place, key, .. }
+        ScenarioError::UnknownKey { location, key, .. }
             if sections
                 .iter()
                 .any(|(table, keys)| table.is_empty() && keys.contains(&key.as_str())) =>
         {
             let advice = format!("a scenario of kind = \"{other}\" has it");
-            ScenarioError::UnknownKey { place, key, advice }
+            ScenarioError::UnknownKey {
+                location,
+                key,
+                advice,
+            }
         }
         error => error,
     }
@@ -94,8 +98,8 @@ pub fn load_bench(path: &Path) -> Result<BenchScenario, ScenarioError> {
 }
 
 /// Where a dotted key stands in a scenario file; none if it does not stand there.
-pub fn place_of(file: &Path, key: &str) -> Option<Place> {
-    place_of_key(file, key, SCHEMA)
+pub fn location_of(file: &Path, key: &str) -> Option<Location> {
+    location_of_key(file, key, SCHEMA)
 }
 
 /// Keys that a file gives in a table, by its dotted name; at the top for none.

@@ -91,9 +91,9 @@ mod tests {
         let of = |text: &str| {
             let document = Document::new(Path::new("a.toml"), text, 2).unwrap();
             let found = of_cell(&document, &tables::<ScenarioFile>());
-            let told = found.iter().map(|value| (value.key.clone(), value.default));
+            let pairs = found.iter().map(|value| (value.key.clone(), value.default));
             assert!(found.iter().all(|value| !value.decides.is_empty()));
-            told.collect::<Vec<_>>()
+            pairs.collect::<Vec<_>>()
         };
         assert_eq!(of("[workpiece.burr]\nkind = \"none\"\n"), []);
         let found = of("[removal]\nlaw = \"preston\"\ncoefficient_mm3_per_j = 0.01\n");

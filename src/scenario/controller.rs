@@ -9,7 +9,7 @@ use crate::device::{DeviceParameters, PressureMap};
 use crate::keys::check::Section;
 use crate::keys::declaration::{Plain, keys};
 use crate::keys::document::Document;
-use crate::keys::error::{Place, ScenarioError};
+use crate::keys::error::{Location, ScenarioError};
 use crate::keys::suggestion::join;
 use crate::physics::seal_friction::SealFriction;
 use crate::plant::{Nominal, PlantParameters, registry};
@@ -75,9 +75,9 @@ pub struct ControllerScenario {
     /// Time between two answers, held in between [s]: whole steps of the scenario.
     pub period: f64,
     /// Where the keys stand that the file gives.
-    places: Vec<(String, Place)>,
+    locations: Vec<(String, Location)>,
     /// Where the table stands, or its file.
-    table: Place,
+    table: Location,
 }
 
 /// A force controller with what the file says of it; `None` is tuned to the device.
@@ -122,9 +122,9 @@ impl ControllerScenario {
 
     /// Refuses a value that only its controller can judge.
     pub fn refuse(&self, key: &str, found: String, expected: String) -> ScenarioError {
-        let given = self.places.iter().find(|(name, _)| name == key);
+        let given = self.locations.iter().find(|(name, _)| name == key);
         ScenarioError::Value {
-            place: given.map_or(&self.table, |(_, place)| place).clone(),
+            location: given.map_or(&self.table, |(_, location)| location).clone(),
             key: join(TABLE, key),
             found,
             expected,
@@ -133,7 +133,7 @@ impl ControllerScenario {
 
     /// Whether the file gives a key.
     pub fn gives(&self, key: &str) -> bool {
-        self.places.iter().any(|(name, _)| name == key)
+        self.locations.iter().any(|(name, _)| name == key)
     }
 }
 
@@ -147,16 +147,16 @@ pub(super) fn controller(
 ) -> Result<ControllerScenario, ScenarioError> {
     let section = Section::new(document, TABLE);
     section.of_kind::<ControllerKeys>(None)?;
-    let place = |key: &str| (key.to_owned(), document.place(&join(TABLE, key)));
+    let location = |key: &str| (key.to_owned(), document.location(&join(TABLE, key)));
     Ok(ControllerScenario {
         law: law(&section, keys, &device.seal_friction)?,
         period: period(&section, keys.period, sensing, step)?,
-        places: section
+        locations: section
             .given()
             .filter(|key| !["kind", "period_ms"].contains(key))
-            .map(place)
+            .map(location)
             .collect(),
-        table: document.place(TABLE),
+        table: document.location(TABLE),
     })
 }
 
@@ -179,14 +179,14 @@ fn law(
             response_time: keys.response_time,
             observer_time: keys.observer_time,
             tracking_frequency: keys.tracking_frequency,
-            seals: believed_seals(section, keys, seals)?,
+            seals: nominal_seals(section, keys, seals)?,
             friction_uncertainty: keys.friction_uncertainty,
         },
     })
 }
 
 /// The device's seals with what the file says is nominal otherwise; none if it says nothing of them.
-fn believed_seals(
+fn nominal_seals(
     section: &Section<'_>,
     keys: &ControllerKeys,
     own: &SealFriction,

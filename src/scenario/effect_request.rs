@@ -68,7 +68,7 @@ impl EffectRequest {
     /// A number or a joint that the effect does not have, for people.
     pub fn edits(
         &self,
-        believed: &PlantParameters,
+        nominal: &PlantParameters,
         most_observable_joint: usize,
     ) -> Result<Vec<KeyValue>, String> {
         let wanted = self
@@ -79,9 +79,9 @@ impl EffectRequest {
             let joint = wanted.unwrap_or_default();
             format!("there is no joint {joint} for {} to be of", self.name)
         })?;
-        let parameters = effect.parameters(believed);
+        let parameters = effect.parameters(nominal);
         let names: Vec<&str> = parameters.iter().map(|p| p.quantity.name).collect();
-        let mut values = effect.usual(believed);
+        let mut values = effect.usual(nominal);
         for (key, value) in &self.numbers {
             let converted = |name: &&str| Unit::convert(key, *value, name);
             if let Some((place, value)) = names

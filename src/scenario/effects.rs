@@ -75,8 +75,8 @@ pub(super) fn effects(
             key,
         });
     }
-    let place = |effect: &Effect| known.iter().position(|known| known.name == effect.name);
-    found.sort_by_key(|present| place(present.effect).unwrap_or(known.len()));
+    let order = |effect: &Effect| known.iter().position(|known| known.name == effect.name);
+    found.sort_by_key(|present| order(present.effect).unwrap_or(known.len()));
     Ok(found)
 }
 
@@ -96,7 +96,7 @@ fn tables<'k>(document: &Document<'_>, keys: &'k EffectKeys) -> Result<Entries<'
         EffectKeys::List(list) => {
             let tables = list.iter().enumerate();
             return Ok(tables
-                .map(|(place, table)| (format!("effect[{place}]"), None, table))
+                .map(|(index, table)| (format!("effect[{index}]"), None, table))
                 .collect());
         }
         EffectKeys::Named(named) => named,
@@ -114,7 +114,7 @@ fn tables<'k>(document: &Document<'_>, keys: &'k EffectKeys) -> Result<Entries<'
             form += &format!(", {key} = {value}");
         }
         return Err(ScenarioError::Value {
-            place: document.key_place(&key),
+            location: document.key_location(&key),
             key,
             found: "the form of schema 1".to_owned(),
             expected: format!("{form}, each on a line of its own"),
@@ -137,7 +137,7 @@ fn named_effect(
     found.copied().ok_or_else(|| {
         let names: Vec<&str> = known.iter().map(|effect| effect.name).collect();
         ScenarioError::UnknownKey {
-            place: document.key_place(key),
+            location: document.key_location(key),
             key: key.to_owned(),
             advice: nearest(name, &names),
         }
@@ -202,7 +202,7 @@ fn values(
         if !names.iter().any(|name| means(key, name)) {
             let dotted = section.dotted(key);
             return Err(ScenarioError::UnknownKey {
-                place: section.document().key_place(&dotted),
+                location: section.document().key_location(&dotted),
                 key: dotted,
                 advice: nearest(key, &names),
             });

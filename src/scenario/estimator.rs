@@ -134,13 +134,13 @@ fn nominal_device(keys: &EstimatorKeys, device: &DeviceParameters) -> DevicePara
 /// (JCGM 100:2008, F.2.2.1).
 fn noise(keys: &EstimatorKeys, sensing: &SensingParameters) -> SensorNoise {
     let rounded = |noise: f64, step: f64| (noise * noise + step * step / 12.0).sqrt();
-    let stroke = believed(&sensing.stroke, white::STROKE, |s| {
+    let stroke = nominal_noise(&sensing.stroke, white::STROKE, |s| {
         rounded(s.noise, s.resolution)
     });
-    let acceleration = believed(&sensing.acceleration, white::ACCELERATION, |s| {
+    let acceleration = nominal_noise(&sensing.acceleration, white::ACCELERATION, |s| {
         rounded(s.noise, s.resolution)
     });
-    let pressure = believed(&sensing.regulator_pressure, white::PRESSURE, |s| {
+    let pressure = nominal_noise(&sensing.regulator_pressure, white::PRESSURE, |s| {
         rounded(s.noise.hypot(s.adc.noise * s.step()), s.step())
     });
     SensorNoise {
@@ -151,7 +151,7 @@ fn noise(keys: &EstimatorKeys, sensing: &SensingParameters) -> SensorNoise {
 }
 
 /// Standard deviation of a channel; of one without noise that of usual white noise, for no filter can do without.
-fn believed<S>(channel: &Measurement<S>, usual: f64, real: impl FnOnce(&S) -> f64) -> f64 {
+fn nominal_noise<S>(channel: &Measurement<S>, usual: f64, real: impl FnOnce(&S) -> f64) -> f64 {
     let deviation = match channel {
         Measurement::Ideal => 0.0,
         Measurement::White { standard_deviation } => *standard_deviation,

@@ -178,7 +178,7 @@ fn drives(
 pub(super) fn is_rig(path: &Path) -> Result<bool, ScenarioError> {
     let text = read_text(path)?;
     let document = Document::new(path, &text, file::SCHEMA)?;
-    Ok(document.place("cylinder").position.is_some())
+    Ok(document.location("cylinder").position.is_some())
 }
 
 /// The device of a scenario, and its physics: its model with what the scenario overrides.

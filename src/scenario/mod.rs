@@ -28,7 +28,7 @@ mod variation;
 mod workpiece;
 
 pub use crate::keys::error::ScenarioError;
-pub use any::{AnyScenario, keys_given, load, load_any, load_bench, place_of};
+pub use any::{AnyScenario, keys_given, load, load_any, load_bench, location_of};
 pub use assumed::AssumedValue;
 pub use bench::BenchScenario;
 pub use cell::{

@@ -62,7 +62,7 @@ keys! {
         /// which column is what
         columns: ColumnsKeys = "columns";
         /// the nominal law
-        believed: BelievedKeys = "believed";
+        nominal: NominalKeys = "believed";
     }
 
     /// `[tables]`.
@@ -128,7 +128,7 @@ keys! {
     }
 
     /// `[believed]`: the nominal law.
-    struct BelievedKeys {
+    struct NominalKeys {
         /// in proportion to force, speed and time; the same above a threshold force; powers of them
         law: Law = "law";
         /// volume that comes off at the reference settings; left out: to be fitted
@@ -173,7 +173,7 @@ pub struct TableColumn {
 
 /// Law that is believed, [SI] but for speed and wear.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BelievedRemoval {
+pub struct NominalRemoval {
     /// Volume at the reference settings [m3]; none: to be fitted.
     pub volume: Option<f64>,
     /// Reference force [N]; none: the mean of the table. So the others.
@@ -232,7 +232,7 @@ pub struct RemovalTableFile {
     /// Column that is 0 of rows of less weight, and that weight.
     pub weight: Option<(String, f64)>,
     /// The law.
-    pub believed: BelievedRemoval,
+    pub nominal: NominalRemoval,
 }
 
 /// Whether a file says that it is of a removal table; not where it cannot be read.
@@ -278,7 +278,7 @@ pub fn load_removal_table(path: &Path) -> Result<RemovalTableFile, ScenarioError
             .map(|keys| column(&columns, key, keys, units))
             .transpose()
     };
-    let believed = believed(&document, &keys.believed, is_feed)?;
+    let nominal = nominal(&document, &keys.nominal, is_feed)?;
     let speed = optional("speed", &keys.columns.speed, &SPEEDS)?;
     Ok(RemovalTableFile {
         title: keys.title.unwrap_or_default(),
@@ -296,7 +296,7 @@ pub fn load_removal_table(path: &Path) -> Result<RemovalTableFile, ScenarioError
         scatter: keys.columns.volume.scatter.unwrap_or(0.0) / 100.0,
         volume: column(&columns, "volume", &keys.columns.volume, &VOLUMES)?,
         weight: (keys.columns.weight).map(|weight| (weight.name, weight.where_0)),
-        believed,
+        nominal,
         path: path.to_owned(),
         text: text.clone(),
     })
@@ -382,11 +382,11 @@ fn column(
     })
 }
 
-fn believed(
+fn nominal(
     document: &Document<'_>,
-    keys: &BelievedKeys,
+    keys: &NominalKeys,
     is_feed: bool,
-) -> Result<BelievedRemoval, ScenarioError> {
+) -> Result<NominalRemoval, ScenarioError> {
     let section = Section::new(document, "believed");
     let needed = match keys.law {
         Law::Threshold if keys.threshold.is_none() => Some(("threshold_force_n", "threshold")),
@@ -400,7 +400,7 @@ fn believed(
         let expected = "the settings at which the tool takes off `reference_volume_mm3`";
         return Err(section.missing("reference_force_n", expected));
     }
-    Ok(BelievedRemoval {
+    Ok(NominalRemoval {
         volume: keys.volume,
         force: keys.force,
         time: match is_feed {

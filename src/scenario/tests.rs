@@ -100,9 +100,9 @@ fn message(text: &str) -> String {
 }
 
 /// Refuses a text at a line and column, with these words.
-fn text_refused(text: &str, place: &str, words: &str) {
+fn text_refused(text: &str, location: &str, words: &str) {
     let message = message(text);
-    let expected = format!("scenarios/test.toml:{place}: {words}");
+    let expected = format!("scenarios/test.toml:{location}: {words}");
     assert!(
         message.ends_with(&expected),
         "{message}\nexpected {expected}"
@@ -110,6 +110,6 @@ fn text_refused(text: &str, place: &str, words: &str) {
 }
 
 /// Refuses `to` in place of `from` in the minimal scenario.
-fn refused(from: &str, to: &str, place: &str, words: &str) {
-    text_refused(&edited(from, to), place, words);
+fn refused(from: &str, to: &str, location: &str, words: &str) {
+    text_refused(&edited(from, to), location, words);
 }

@@ -10,7 +10,7 @@ use super::AnyScenario;
 use super::any::from_text;
 use super::sections::{bench_sections, scenario_sections};
 use crate::keys::document::read_text;
-use crate::keys::error::{Place, ScenarioError};
+use crate::keys::error::{Location, ScenarioError};
 use crate::keys::suggestion::nearest_dotted;
 
 pub use edit::{KeyValue, listed};
@@ -89,7 +89,7 @@ impl ScenarioTemplate {
             edit.apply(&mut document).map_err(|reason| {
                 let key = edit.key().to_owned();
                 ScenarioError::Misplaced {
-                    place: self.bare(),
+                    location: self.bare(),
                     key,
                     reason,
                 }
@@ -150,13 +150,13 @@ impl ScenarioTemplate {
 
     fn syntax(&self, error: &TomlError) -> ScenarioError {
         ScenarioError::Syntax {
-            place: self.bare(),
+            location: self.bare(),
             reason: error.message().to_owned(),
         }
     }
 
-    fn bare(&self) -> Place {
-        Place {
+    fn bare(&self) -> Location {
+        Location {
             file: self.path.clone(),
             position: None,
             excerpt: None,
@@ -164,9 +164,9 @@ impl ScenarioTemplate {
     }
 
     fn without_line(&self, error: ScenarioError) -> ScenarioError {
-        match error.place() {
+        match error.location() {
             // Its line is one of the text with the values in it.
-            Some(place) if place.file == self.path => error.at(self.bare()),
+            Some(location) if location.file == self.path => error.at(self.bare()),
             _ => error,
         }
     }

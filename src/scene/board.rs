@@ -25,7 +25,7 @@ pub enum BoardRole {
     /// As a sensor read it.
     Measured,
     /// By the model as it was believed.
-    Believed,
+    Nominal,
     /// By the improved model.
     Improved,
     /// A band, or a limit.

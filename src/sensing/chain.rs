@@ -253,8 +253,8 @@ mod tests {
             / 20_000.0;
         assert!((mean / 100.0 - 1.208).abs() < 1e-3);
         // RC of 0.1 s: 1 - 1/e of the step after 0.1 s.
-        let told = (0..100).fold(0.0, |_, _| chain.command(1.8e5, 1e-3));
-        assert!((told / 1.8e5 - 0.632).abs() < 0.02);
+        let held = (0..100).fold(0.0, |_, _| chain.command(1.8e5, 1e-3));
+        assert!((held / 1.8e5 - 0.632).abs() < 0.02);
         chain.settle(1.8e5);
         assert!((chain.command(1.8e5, 1e-3) / 1.8e5 - 1.0).abs() < 0.02);
     }

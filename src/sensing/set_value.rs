@@ -87,15 +87,15 @@ mod tests {
         let step = chain.full_scale / 255.0;
         assert!((chain.step() - step).abs() < 1e-9);
         for wanted in [1.2e5, 1.8e5, 2.1e5, 3.0e5] {
-            let told = chain.at_rest(wanted);
+            let held = chain.at_rest(wanted);
             // 1.8 bar lies half way between two duties: 0.65 % off either way.
-            assert!((told - wanted).abs() <= 0.5 * step * (1.0 + 1e-9));
+            assert!((held - wanted).abs() <= 0.5 * step * (1.0 + 1e-9));
             // On the grid of the duty.
-            assert!(((told / step).round() - told / step).abs() < 1e-9);
+            assert!(((held / step).round() - held / step).abs() < 1e-9);
             let mut state = SetValueState::settled(&chain, 0.0);
             state.advance(&chain, wanted, 1000.0 / 490.0);
             let mean = state.advance(&chain, wanted, 10.0 / 490.0);
-            assert!((mean / told - 1.0).abs() < 1e-8);
+            assert!((mean / held - 1.0).abs() < 1e-8);
         }
     }
 

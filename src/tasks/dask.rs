@@ -7,7 +7,7 @@ use std::process::{Child, Command, Stdio};
 use serde::Deserialize;
 
 use super::TaskError;
-use super::engine::{Engine, Told};
+use super::engine::{Engine, TaskMessage};
 
 /// The driver.
 const DRIVER: &str = include_str!("driver.py");
@@ -59,7 +59,12 @@ impl Drop for Driver {
 ///
 /// # Errors
 /// Python, Dask or a worker is refused; the driver ended early; or [`TaskError::Failed`] once all others are done.
-pub fn dask(dask: &Dask, plan: &Path, of: usize, told: &dyn Fn(Told)) -> Result<(), TaskError> {
+pub fn dask(
+    dask: &Dask,
+    plan: &Path,
+    of: usize,
+    report: &dyn Fn(TaskMessage),
+) -> Result<(), TaskError> {
     let no_python = |reason: &dyn std::fmt::Display| TaskError::NoPython {
         python: dask.python.display().to_string(),
         reason: reason.to_string(),
@@ -83,9 +88,9 @@ pub fn dask(dask: &Dask, plan: &Path, of: usize, told: &dyn Fn(Told)) -> Result<
         .flat_map(|out| BufReader::new(out).lines());
     for line in lines.map_while(Result::ok) {
         match serde_json::from_str(&line) {
-            Ok(Line::Done(done)) => told(Told::Done(done)),
+            Ok(Line::Done(done)) => report(TaskMessage::Done(done)),
             Ok(Line::Dashboard(address)) => {
-                told(Told::Words(format!("Dask's dashboard: {address}")));
+                report(TaskMessage::Words(format!("Dask's dashboard: {address}")));
             }
             Ok(Line::Refused(reason)) => return Err(TaskError::Refused { reason }),
             Ok(Line::Python(reason)) => return Err(no_python(&reason)),
@@ -105,7 +110,7 @@ pub fn dask(dask: &Dask, plan: &Path, of: usize, told: &dyn Fn(Told)) -> Result<
         }),
         (status, _) => Err(TaskError::DriverExited {
             how: status.map_or_else(|e| e.to_string(), |status| status.to_string()),
-            told: words,
+            message: words,
         }),
     }
 }

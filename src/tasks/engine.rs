@@ -39,7 +39,7 @@ impl FromStr for Engine {
 
 /// What an engine tells while it works.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Told {
+pub enum TaskMessage {
     /// So many tasks stand now.
     Done(usize),
     /// Something that people should know, as the address of a dashboard or a worker that was lost.

@@ -89,12 +89,12 @@ pub enum TaskError {
     },
     /// The driver ended before the tasks.
     #[error(
-        "the driver of Dask ended early ({how}): {told}; finished tasks are kept, and the same command with --resume does the others"
+        "the driver of Dask ended early ({how}): {message}; finished tasks are kept, and the same command with --resume does the others"
     )]
     DriverExited {
         /// Its exit.
         how: String,
         /// Its last words.
-        told: String,
+        message: String,
     },
 }

@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 use super::TaskError;
-use super::engine::Told;
+use super::engine::TaskMessage;
 use super::plan::{Plan, Task};
 use super::store::Store;
 
@@ -70,7 +70,7 @@ pub fn local(
     store: &Store,
     jobs: usize,
     work: &(dyn Fn(&Task) -> Result<(), TaskError> + Sync),
-    told: &(dyn Fn(Told) + Sync),
+    report: &(dyn Fn(TaskMessage) + Sync),
 ) -> Result<(), TaskError> {
     let of = plan.head.tasks;
     let queue = Mutex::new(Queue {
@@ -86,7 +86,7 @@ pub fn local(
     let changed = Condvar::new();
     std::thread::scope(|scope| {
         for _ in 0..jobs.clamp(1, of.max(1)) {
-            scope.spawn(|| worker(&queue, &changed, store, work, told));
+            scope.spawn(|| worker(&queue, &changed, store, work, report));
         }
     });
     let queue = queue.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -106,7 +106,7 @@ fn worker(
     changed: &Condvar,
     store: &Store,
     work: &(dyn Fn(&Task) -> Result<(), TaskError> + Sync),
-    told: &(dyn Fn(Told) + Sync),
+    report: &(dyn Fn(TaskMessage) + Sync),
 ) {
     let lock = || -> MutexGuard<'_, Queue> { queue.lock().unwrap_or_else(PoisonError::into_inner) };
     let mut own = lock();
@@ -114,7 +114,7 @@ fn worker(
         let before = own.done;
         let next = own.next(store);
         if own.done != before {
-            told(Told::Done(own.done));
+            report(TaskMessage::Done(own.done));
         }
         let Some(task) = next else {
             if own.running == 0 || own.error.is_some() {
@@ -134,7 +134,7 @@ fn worker(
                 own.done += 1;
                 let freed = own.waiting.remove(&task.id).unwrap_or_default();
                 own.ready.extend(freed);
-                told(Told::Done(own.done));
+                report(TaskMessage::Done(own.done));
             }
             Ok(Err(error)) => own.error = Some(error),
             Err(_) => own.fail(
@@ -190,19 +190,19 @@ mod tests {
             Ok(store.put(&task.id, &[], "{}")?)
         };
         let most = Mutex::new(0);
-        let told = |told: Told| {
-            if let Told::Done(done) = told {
+        let report = |report: TaskMessage| {
+            if let TaskMessage::Done(done) = report {
                 let mut most = most.lock().unwrap();
                 *most = done.max(*most);
             }
         };
-        local(Plan::open(&path).unwrap(), &store, 4, &work, &told).unwrap();
+        local(Plan::open(&path).unwrap(), &store, 4, &work, &report).unwrap();
         let mut ids = begun.lock().unwrap().clone();
         ids.sort();
         ids.dedup();
         assert_eq!((ids.len(), *most.lock().unwrap()), (60, 60));
         begun.lock().unwrap().clear();
-        local(Plan::open(&path).unwrap(), &store, 4, &work, &told).unwrap();
+        local(Plan::open(&path).unwrap(), &store, 4, &work, &report).unwrap();
         assert!(begun.lock().unwrap().is_empty());
     }
 

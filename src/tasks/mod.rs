@@ -13,7 +13,7 @@ mod snakemake;
 mod store;
 
 pub use dask::{Dask, dask};
-pub use engine::{Engine, Told};
+pub use engine::{Engine, TaskMessage};
 pub use error::TaskError;
 pub use local::local;
 pub use plan::{Head, Plan, Task, name_of};

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::sweep::Sweep;
 use super::{QUANTILES, Varied, rank_correlation, shares_of_variance};
 use crate::metrics::{Label, labels, metric_names, most_important};
-use crate::quantity::spoken::{number, spoken};
+use crate::quantity::display_name::{display_name, number};
 use crate::quantity::{column, counted};
 use crate::recording::RecordingError;
 use crate::recording::long_column::LongColumn;
@@ -15,9 +15,9 @@ use crate::recording::provenance::SourceFile;
 use crate::stats::quantiles;
 
 /// Refusals that are told with their run.
-const TOLD: usize = 3;
+const MOST_REASONS: usize = 3;
 /// Share from which a driver stands in a terminal's line [1].
-const TELLING: f64 = 0.01;
+const MIN_SHARE: f64 = 0.01;
 /// Drivers of a terminal's line.
 const NAMED: usize = 2;
 
@@ -106,7 +106,7 @@ impl Driver {
 impl VariedKey {
     /// Its values, for a terminal.
     fn words(&self) -> String {
-        let unit = match spoken(short(&self.key)).1 {
+        let unit = match display_name(short(&self.key)).1 {
             unit if unit.is_empty() => unit,
             unit => format!(" {unit}"),
         };
@@ -230,14 +230,14 @@ impl Swept {
             (2, "refused"),
             (3, "stopped by the physics"),
         ];
-        let told: Vec<String> = words
+        let endings: Vec<String> = words
             .into_iter()
             .filter_map(|(code, words)| Some(format!("{} {words}", self.codes.get(&code)?)))
             .collect();
-        text += &match told.is_empty() {
+        text += &match endings.is_empty() {
             true if self.bounded => ", all to their end and within the bounds".to_owned(),
             true => ", all to their end; the scenario sets no bounds".to_owned(),
-            false => format!(": {}", told.join(", ")),
+            false => format!(": {}", endings.join(", ")),
         };
         text + "."
     }
@@ -249,15 +249,15 @@ impl Swept {
         for variable in &self.variables {
             text += &format!("varied: {}\n", variable.words());
         }
-        for (label, metric) in self.told() {
+        for (label, metric) in self.most_important() {
             let ends = [0.05, 0.5, 0.95].map(|share| metric.quantile(share));
             let cells = column(&ends, label.unit);
             let drivers: Vec<String> = metric
                 .sure()
-                .filter(|driver| driver.share >= TELLING)
+                .filter(|driver| driver.share >= MIN_SHARE)
                 .take(NAMED)
                 .map(|driver| {
-                    let name = spoken(short(&driver.key)).0;
+                    let name = display_name(short(&driver.key)).0;
                     let [low, high] = driver.interval.map(percent);
                     format!("{name} {} % ({low} to {high})", percent(driver.share))
                 })
@@ -275,14 +275,14 @@ impl Swept {
                 label.name, cells[0], cells[2], cells[1]
             );
         }
-        if labels.is_empty() || self.told().next().is_none() {
+        if labels.is_empty() || self.most_important().next().is_none() {
             text += "no number differs between the runs\n";
         }
         text
     }
 
     /// Metrics that differ and matter most.
-    pub fn told(&self) -> impl Iterator<Item = (Label, &MetricOfRuns)> {
+    pub fn most_important(&self) -> impl Iterator<Item = (Label, &MetricOfRuns)> {
         let labels = self.labels();
         let names = most_important(self.is_bench);
         names.into_iter().filter_map(move |name| {
@@ -358,12 +358,12 @@ fn ends(columns: ReadColumns<'_>) -> Result<Ends, RecordingError> {
         });
     };
     let mut counts = BTreeMap::new();
-    let mut told = Vec::new();
+    let mut first = Vec::new();
     for (run, (code, reason)) in codes.iter().zip(reasons).enumerate() {
         *counts.entry(*code as u8).or_insert(0) += 1;
-        if *code >= 2.0 && told.len() < TOLD {
-            told.push((run + 1, reason.clone()));
+        if *code >= 2.0 && first.len() < MOST_REASONS {
+            first.push((run + 1, reason.clone()));
         }
     }
-    Ok((counts, told))
+    Ok((counts, first))
 }

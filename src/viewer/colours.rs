@@ -28,7 +28,7 @@ pub(super) fn role_colour(role: BoardRole) -> Colour {
     match role {
         // Seen on the viewer's dark and on its light ground.
         BoardRole::Measured => GREY,
-        BoardRole::Believed => ORANGE,
+        BoardRole::Nominal => ORANGE,
         BoardRole::Improved => SKY_BLUE,
         BoardRole::Guide => YELLOW,
     }

@@ -35,13 +35,13 @@ pub fn case(bench: &Bench, folder: &str, effects: &str, dirt: Dirt) {
 /// The files of a case; the rig file does not say what is planted.
 pub fn case_files(bench: &Bench, folder: &str, effects: &str, dirt: Dirt) {
     let rig = format!("{folder}/rig.toml");
-    let believed = RIG.replace(
+    let nominal = RIG.replace(
         "time_constant_s = 0.1",
         "time_constant_s = { value = 0.1, tolerance = 0.1 }",
     );
-    bench.write(&rig, believed.clone() + RECORDINGS + effects);
+    bench.write(&rig, nominal.clone() + RECORDINGS + effects);
     let truth = load_rig(&bench.path(&rig)).unwrap();
-    bench.write(&rig, believed + RECORDINGS);
+    bench.write(&rig, nominal + RECORDINGS);
     for (seed, (name, at)) in (1..).zip(PROGRAMS) {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let jitter = if dirt == Dirt::Much { 6e-4 } else { 0.0 };

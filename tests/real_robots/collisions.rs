@@ -141,17 +141,17 @@ fn meetings_along_a_motion_are_those_that_coal_finds() {
     }
     assert_eq!(verdicts.len(), 3 * PLACEMENTS);
     let folder = tempfile::tempdir().unwrap();
-    let [asked, told] = ["asked.json", "told.json"].map(|name| folder.path().join(name));
+    let [asked, reported] = ["asked.json", "told.json"].map(|name| folder.path().join(name));
     std::fs::write(&asked, serde_json::to_string(&documents).unwrap()).unwrap();
     let script = project("tests/reference/coal_placements.py");
     let done = Command::new(python)
         .arg(script)
-        .args([&asked, &told])
+        .args([&asked, &reported])
         .output()
         .unwrap();
     let errors = String::from_utf8_lossy(&done.stderr);
     assert!(done.status.success(), "{errors}");
-    let text = std::fs::read_to_string(told).unwrap();
+    let text = std::fs::read_to_string(reported).unwrap();
     let distances: Vec<Vec<f64>> = serde_json::from_str(&text).unwrap();
     let (mut meeting, mut near, mut pairs) = (0, 0, 0);
     for (placement, (own, distances)) in verdicts.iter().zip(&distances).enumerate() {

@@ -68,17 +68,18 @@ pub(super) fn cell(scenario: Scenario) -> Result<Report, AppError> {
 /// Force and feed of each pass along the edge.
 fn job(report: &mut Report, cell: &Cell) {
     let stroke = shown(cell.setup.scenario.process.working_stroke * 1e3);
-    let told = |pass: &Pass| format!("{} N at {} mm/s", shown(pass.force), shown(pass.feed * 1e3));
+    let pass_text =
+        |pass: &Pass| format!("{} N at {} mm/s", shown(pass.force), shown(pass.feed * 1e3));
     let count = cell.setup.passes.len();
     for (index, pass) in cell.setup.passes.iter().enumerate() {
-        let told = told(pass);
+        let pass_text = pass_text(pass);
         match (count, index) {
-            (1, _) => report.fact("job", format!("{told}, working stroke {stroke} mm")),
+            (1, _) => report.fact("job", format!("{pass_text}, working stroke {stroke} mm")),
             (_, 0) => {
                 report.fact("job", format!("{count} passes, working stroke {stroke} mm"));
-                report.fact("", format!("pass 1: {told}"));
+                report.fact("", format!("pass 1: {pass_text}"));
             }
-            _ => report.fact("", format!("pass {}: {told}", index + 1)),
+            _ => report.fact("", format!("pass {}: {pass_text}", index + 1)),
         }
     }
     report.number("passes", count);

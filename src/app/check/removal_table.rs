@@ -44,10 +44,10 @@ pub(super) fn removal_table(path: &Path) -> Result<Report, AppError> {
         let label = if index == 0 { "columns" } else { "" };
         report.fact(label, format!("{what} from {}{unit}", column.name));
     }
-    let [force, time, speed, area] = table.believed.exponents.map(shown);
+    let [force, time, speed, area] = table.nominal.exponents.map(shown);
     let mut law = format!("exponents of force {force}, time {time}, speed {speed}, area {area}");
-    if table.believed.threshold > 0.0 {
-        law += &format!(", above {} N", shown(table.believed.threshold));
+    if table.nominal.threshold > 0.0 {
+        law += &format!(", above {} N", shown(table.nominal.threshold));
     }
     report.fact("believed", law);
     report.number("rows", case.rows.len());

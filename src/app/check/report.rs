@@ -189,13 +189,13 @@ mod tests {
 
     #[test]
     fn a_path_is_told_without_detours() {
-        for (path, told) in [
+        for (path, shown) in [
             ("scenarios/../models/device.toml", "models/device.toml"),
             ("../a/./b/../c.stl", "../a/c.stl"),
             ("../../x", "../../x"),
             ("/a/b", "/a/b"),
         ] {
-            assert_eq!(without_detours(Path::new(path)), Path::new(told), "{path}");
+            assert_eq!(without_detours(Path::new(path)), Path::new(shown), "{path}");
         }
     }
 }

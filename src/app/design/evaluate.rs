@@ -45,7 +45,7 @@ impl ScenarioEvaluator {
                     let variable = reason.key().and_then(|key| study.variable_to_blame(key));
                     Err(match variable {
                         Some(variable) => DesignError::Variable {
-                            place: variable.place.clone(),
+                            location: variable.location.clone(),
                             key: variable.key.clone(),
                             reason: Box::new(reason),
                         },
@@ -68,7 +68,7 @@ fn drawn(study: &Study, template: &ScenarioTemplate) -> Result<(), DesignError> 
             let design = study.starting_design().with([(scatter.key.clone(), end)]);
             let taken = template.with(&design.scenario_values());
             taken.map_err(|reason| DesignError::Scatter {
-                place: scatter.place.clone(),
+                location: scatter.location.clone(),
                 key: scatter.key.clone(),
                 value: end,
                 reason: Box::new(reason),

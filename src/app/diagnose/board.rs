@@ -4,7 +4,9 @@ mod text;
 
 use super::super::report::{lacking as lacking_of, robust_range, variable};
 use crate::diagnosis::answer::Answer;
-use crate::diagnosis::answer::words::{CHANNEL_UNITS, CHANNEL_WORDS, capital, spoken, yardstick};
+use crate::diagnosis::answer::words::{
+    CHANNEL_UNITS, CHANNEL_WORDS, capital, display_name, reference_noise,
+};
 use crate::diagnosis::difference::comparison::{Balance, Compared, ComparedChannel, Comparison};
 use crate::diagnosis::difference::mismatch::Mismatch;
 use crate::diagnosis::formula::unlisted::report::{ShapeRow, UnlistedReport};
@@ -82,7 +84,7 @@ fn sheet(answer: &Answer, recording: &Compared, of_flange: bool) -> Sheet {
     let start = recording.time.first().copied().unwrap_or_default();
     let all = recording.channels.iter();
     let all: Vec<&[f64]> = all
-        .flat_map(|c| [&c.measured[..], &c.believed, &c.improved])
+        .flat_map(|c| [&c.measured[..], &c.nominal, &c.improved])
         .collect();
     let kept = kept(recording.time.len(), &all, &[], MOST_SAMPLES);
     let mut rows: Vec<&ComparedChannel> = recording.channels.iter().collect();
@@ -138,7 +140,7 @@ fn row(
     };
     let before = if of_flange { "desired" } else { "as believed" };
     let models = [
-        (&channel.believed, before, BoardRole::Believed),
+        (&channel.nominal, before, BoardRole::Nominal),
         (&channel.improved, "improved", BoardRole::Improved),
     ];
     let models = models.into_iter().filter(|(values, ..)| is_known(values));
@@ -162,8 +164,8 @@ fn row(
         let noise = noise.filter(|noise| noise.channel == COLUMNS[index]);
         let guides = noise.flat_map(|noise| {
             let half = NORMAL_95 * factor * noise.standard_deviation;
-            let yardstick = yardstick(answer.details.remaining.is_some());
-            [half, -half].map(|end| (format!("95 % of {yardstick} [{unit}]"), end))
+            let reference_noise = reference_noise(answer.details.remaining.is_some());
+            [half, -half].map(|end| (format!("95 % of {reference_noise} [{unit}]"), end))
         });
         let guides: Vec<(String, f64)> = guides.collect();
         plots.push(SheetPlot {
@@ -268,7 +270,7 @@ fn of_balance(balance: &Balance) -> Cloud {
         horizontal: format!("{words} [{of}]"),
         vertical: format!("what it lacks [{unit}]"),
         groups: vec![
-            group("as believed", BoardRole::Believed, &balance.before, -SIDE),
+            group("as believed", BoardRole::Nominal, &balance.before, -SIDE),
             group("improved", BoardRole::Improved, &balance.after, SIDE),
         ],
     }
@@ -276,8 +278,8 @@ fn of_balance(balance: &Balance) -> Cloud {
 
 /// Physics without a name against its variable, with its 95 % band where it is known better than by its own size.
 fn of_unlisted(report: &UnlistedReport) -> Cloud {
-    let (_, at_unit, at) = spoken(&format!("x_{}", report.at_unit));
-    let (_, unit, of) = spoken(&format!("x_{}", report.value_unit));
+    let (_, at_unit, at) = display_name(&format!("x_{}", report.at_unit));
+    let (_, unit, of) = display_name(&format!("x_{}", report.value_unit));
     let known = |row: &&ShapeRow| row.half_width < report.peak_to_peak;
     let line = |label: &str, role, side: f64| CloudGroup {
         label: label.to_owned(),
@@ -338,7 +340,7 @@ mod tests {
             channels: vec![ComparedChannel {
                 channel: Channel::Force,
                 measured: values(0.0),
-                believed: values(2.0),
+                nominal: values(2.0),
                 tolerated: values(1.0),
                 improved: values(-1.0),
                 left_out: values(-2.0),

@@ -55,7 +55,7 @@ pub(super) struct Drawn<'a> {
 pub(super) fn cell_scene(
     cell: &LoadedCell,
     drawn: &Drawn<'_>,
-    [believed, improved]: [&PlantParameters; 2],
+    [nominal, improved]: [&PlantParameters; 2],
 ) -> Result<Scene, AppError> {
     let scenario = &cell.scenario;
     let arm = load_arm(&scenario.arm.urdf, &arm_options(&scenario.arm)).map_err(CellError::from)?;
@@ -63,14 +63,14 @@ pub(super) fn cell_scene(
     let frames = frames(time);
     let recorded = recorded_angles(drawn.axes);
     let simulated = simulated_angles(drawn.axes, improved);
-    let believed = simulated_angles(drawn.axes, believed);
+    let nominal = simulated_angles(drawn.axes, nominal);
     let channels = drawn.compared.channels.iter();
     let mut strokes = channels.filter(|c| c.channel == Channel::Stroke);
     let strokes = strokes.next().map(|c| {
-        let each = [&c.improved, &c.measured, &c.believed];
+        let each = [&c.improved, &c.measured, &c.nominal];
         each.map(|values| held(values.clone(), time.len()))
     });
-    let [out, measured_out, believed_out] =
+    let [out, measured_out, nominal_out] =
         strokes.unwrap_or_else(|| [(); 3].map(|()| vec![0.0; time.len()]));
     let apart = largest_departure(
         &poses(cell, &simulated, &frames),
@@ -85,14 +85,14 @@ pub(super) fn cell_scene(
         let joints = simulated.iter().zip(other);
         joints.map(|(from, to)| drawn_apart(from, to)).collect()
     };
-    let [recorded, believed] = [arm_apart(&recorded), arm_apart(&believed)];
-    let [measured_out, believed_out] =
-        [&measured_out, &believed_out].map(|other| drawn_apart(&out, other));
+    let [recorded, nominal] = [arm_apart(&recorded), arm_apart(&nominal)];
+    let [measured_out, nominal_out] =
+        [&measured_out, &nominal_out].map(|other| drawn_apart(&out, other));
     let mut bodies = Vec::new();
     for (name, angles, stroke, colour) in [
         ("simulated", &simulated, out, None),
         ("recorded", &recorded, measured_out, Some(PALE)),
-        ("believed", &believed, believed_out, Some(AMBER)),
+        ("believed", &nominal, nominal_out, Some(AMBER)),
     ] {
         let poses = poses(cell, angles, &frames);
         let mut own = arm_bodies(cell, &arm, &poses);
@@ -288,9 +288,9 @@ fn edge_path(drawn: &Drawn<'_>) -> EdgePath {
             *nearest = (away, place.point);
         }
         let Some(force) = force else { continue };
-        let (measured, believed) = (force.measured[index], force.believed[index]);
-        let error = (measured - believed) / believed;
-        if believed > 0.0 && error.is_finite() {
+        let (measured, nominal) = (force.measured[index], force.nominal[index]);
+        let error = (measured - nominal) / nominal;
+        if nominal > 0.0 && error.is_finite() {
             let sum = &mut sums[segment(place.station)];
             *sum = (sum.0 + error, sum.1 + 1.0);
         }

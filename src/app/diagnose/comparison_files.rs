@@ -62,7 +62,7 @@ pub(super) fn write_recordings(path: &Path, comparison: &Comparison) -> Result<(
 fn of_model(channel: &ComparedChannel, place: usize) -> &[f64] {
     [
         &channel.measured,
-        &channel.believed,
+        &channel.nominal,
         &channel.tolerated,
         &channel.improved,
         &channel.left_out,
@@ -160,15 +160,15 @@ fn recordings(path: &Path) -> Result<Vec<Compared>, AppError> {
             let read = |place: usize| -> Result<Vec<f64>, AppError> {
                 Ok(rows.numbers(&column(MODELS[place]))?[span.clone()].to_vec())
             };
-            let (measured, believed, tolerated) = (read(0)?, read(1)?, read(2)?);
+            let (measured, nominal, tolerated) = (read(0)?, read(1)?, read(2)?);
             let (improved, left_out) = (read(3)?, read(4)?);
-            if believed.iter().all(|value| value.is_nan()) {
+            if nominal.iter().all(|value| value.is_nan()) {
                 continue;
             }
             channels.push(ComparedChannel {
                 channel,
                 measured,
-                believed,
+                nominal,
                 tolerated,
                 improved,
                 left_out,
@@ -221,7 +221,7 @@ mod tests {
         let channel = |channel, offset: f64| ComparedChannel {
             channel,
             measured: vec![f64::NAN, offset],
-            believed: vec![offset, 1.0],
+            nominal: vec![offset, 1.0],
             tolerated: vec![offset, 0.75],
             improved: vec![0.5, offset],
             left_out: vec![f64::NAN, 0.25],

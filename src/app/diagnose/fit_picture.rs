@@ -11,7 +11,7 @@ const MOST: usize = 4;
 
 /// The picture, if a part of the device was diagnosed.
 pub(super) fn picture(diagnosis: &Diagnosis) -> Result<Option<String>, AppError> {
-    let Some(channel) = diagnosis.believed.parts.output() else {
+    let Some(channel) = diagnosis.nominal.parts.output() else {
         return Ok(None);
     };
     let index = channel as usize;
@@ -26,7 +26,7 @@ pub(super) fn picture(diagnosis: &Diagnosis) -> Result<Option<String>, AppError>
         let of = |readings: &[f64], label: &str, role, stroke| {
             Series::new(label, time.clone(), scaled(readings), role, stroke)
         };
-        let believed = &diagnosis.as_believed.trajectories[place].readings[index];
+        let nominal = &diagnosis.as_nominal.trajectories[place].readings[index];
         let found = &diagnosis.best().fit.prediction.trajectories[place].readings[index];
         let readings = &measured.readings[index];
         panels.push(Panel {
@@ -35,7 +35,7 @@ pub(super) fn picture(diagnosis: &Diagnosis) -> Result<Option<String>, AppError>
             horizontal: Horizontal::Time,
             series: vec![
                 of(readings, "measured", Role::Measured, Stroke::Plain),
-                of(believed, "as believed", Role::Command, Stroke::Dashed),
+                of(nominal, "as believed", Role::Command, Stroke::Dashed),
                 of(found, "with what was found", Role::Estimate, Stroke::Plain),
             ],
             ..Panel::default()
@@ -49,7 +49,7 @@ pub(super) fn picture(diagnosis: &Diagnosis) -> Result<Option<String>, AppError>
             horizontal: Horizontal::Time,
             series: vec![
                 of(
-                    &left(believed),
+                    &left(nominal),
                     "measured less believed",
                     Role::Command,
                     Stroke::Raw,

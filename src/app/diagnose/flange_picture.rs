@@ -69,7 +69,7 @@ fn panel<'a>(
         horizontal: Horizontal::Quantity(format!("time after contact [s], {}", run.name)),
         series: vec![
             series("recorded", &channel.measured, Role::Measured, Stroke::Plain),
-            series("desired", &channel.believed, Role::Command, Stroke::Dashed),
+            series("desired", &channel.nominal, Role::Command, Stroke::Dashed),
             series(
                 "simulated",
                 &channel.improved,

@@ -198,9 +198,9 @@ fn scene(case: &Case, diagnosed: &Diagnosed) -> Result<Option<Scene>, AppError> 
     let compared = diagnosed.comparison.recordings.first();
     let plants = case
         .input()
-        .map(|input| &input.believed)
+        .map(|input| &input.nominal)
         .zip(diagnosed.plant.as_ref());
-    let (Some(compared), Some(trajectory), Some((believed, improved))) =
+    let (Some(compared), Some(trajectory), Some((nominal, improved))) =
         (compared, trajectory, plants)
     else {
         return Ok(None);
@@ -210,5 +210,5 @@ fn scene(case: &Case, diagnosed: &Diagnosed) -> Result<Option<Scene>, AppError> 
         compared,
         trajectory,
     };
-    cell_scene(cell, &drawn, [believed, improved]).map(Some)
+    cell_scene(cell, &drawn, [nominal, improved]).map(Some)
 }

@@ -29,7 +29,7 @@ pub(super) fn page(source: Source<'_>, mesh: &TriangleMesh, list: &EdgeList) -> 
     let (low, high) = mesh.bounds();
     let size = high - low;
     let lines = |curves: &[EdgeCurve], view: usize| -> Vec<DrawnLine> {
-        let colours = told_apart(curves);
+        let colours = distinguishable(curves);
         let curves = curves.iter().zip(colours);
         curves
             .map(|(curve, colour)| DrawnLine {
@@ -131,7 +131,7 @@ fn line(source: Source<'_>, curve: &EdgeCurve, size: f64) -> DrawnLine {
         points: floats(closed(curve, points)),
         pale: !remark.is_empty(),
         outward: outward.normalize_or_zero().to_array(),
-        facts: told(curve),
+        facts: facts(curve),
         remark: remark.to_owned(),
         lines: match remark {
             "" => to_paste(source, curve),
@@ -170,7 +170,7 @@ fn within_its_face(curve: &EdgeCurve, by: f64) -> Vec<DVec3> {
 }
 
 /// Colours such that curves that touch differ, as far as there are colours.
-fn told_apart(curves: &[EdgeCurve]) -> Vec<usize> {
+fn distinguishable(curves: &[EdgeCurve]) -> Vec<usize> {
     let key = |point: &DVec3| (1e7 * *point).round().to_array().map(|v| v as i64);
     let mut taken: BTreeMap<[i64; 3], BTreeSet<usize>> = BTreeMap::new();
     let mut used = [0usize; COLOURS];
@@ -194,7 +194,7 @@ fn told_apart(curves: &[EdgeCurve]) -> Vec<usize> {
 }
 
 /// What is told of an edge, the first two under the pointer as well.
-fn told(curve: &EdgeCurve) -> Vec<[String; 2]> {
+fn facts(curve: &EdgeCurve) -> Vec<[String; 2]> {
     let shape = match curve.kind {
         CurveKind::Arc { radius, angle } => format!(
             "arc, radius {} mm over {}°",
@@ -204,7 +204,7 @@ fn told(curve: &EdgeCurve) -> Vec<[String; 2]> {
         CurveKind::Polyline => format!("polyline of {}", counted(curve.normals.len(), "piece")),
         CurveKind::Straight => kind(curve).to_owned(),
     };
-    let mut told = vec![
+    let mut facts = vec![
         (
             "length",
             format!("{} mm", short(MILLIMETRES * curve.length)),
@@ -215,14 +215,15 @@ fn told(curve: &EdgeCurve) -> Vec<[String; 2]> {
         ("start", format!("({}) mm", place(curve.points[0]))),
     ];
     if curve.closed {
-        told.push((
+        facts.push((
             "closed",
             format!("yes, {}", counted(curve.corners.len(), "corner")),
         ));
     } else {
-        told.push(("end", format!("({}) mm", place(end(curve)))));
+        facts.push(("end", format!("({}) mm", place(end(curve)))));
     }
-    told.into_iter()
+    facts
+        .into_iter()
         .map(|(name, value)| [name.to_owned(), value])
         .collect()
 }

@@ -53,7 +53,7 @@ pub(super) fn write(folder: &Path, policy: OverwritePolicy) -> Result<String, Ap
         text.extend(effects.iter().map(link));
         text.push('\n');
     }
-    let mut told = String::new();
+    let mut summary = String::new();
     let mut pictures = Vec::new();
     for (heading, effects) in &groups {
         text += &format!("## {heading}\n\n");
@@ -69,7 +69,7 @@ pub(super) fn write(folder: &Path, policy: OverwritePolicy) -> Result<String, Ap
             text += &Explained::new(effect, stage).markdown();
             let name = effect.vocabulary().0;
             let drawn = picture(effect, stage)?;
-            told += &format!(
+            summary += &format!(
                 "{name}: {:.0} % of its range, {} bytes\n",
                 100.0 * drawn.difference,
                 drawn.svg.len()
@@ -85,5 +85,5 @@ pub(super) fn write(folder: &Path, policy: OverwritePolicy) -> Result<String, Ap
     for (path, content) in &pictures {
         write_text(path, content)?;
     }
-    Ok(told)
+    Ok(summary)
 }

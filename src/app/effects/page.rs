@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use crate::demonstration::{self as scene, Scene, Stage};
-use crate::diagnosis::answer::words::{capital, spoken, wrapped};
+use crate::diagnosis::answer::words::{capital, display_name, wrapped};
 use crate::effects::{Effect, Header, Subsystem, Which, kinds};
 use crate::plant::PlantParameters;
 use crate::quantity::significant;
@@ -49,14 +49,14 @@ struct Number {
     /// That of the picture.
     shown: f64,
     /// Whether it is a part of a diagnosis's answer.
-    told: bool,
+    reported: bool,
 }
 
 /// An effect with which another is confused.
 #[derive(Debug, Serialize)]
 struct Rival {
     name: &'static str,
-    told_apart: &'static str,
+    distinguished_by: &'static str,
 }
 
 /// A subsystem in words.
@@ -87,18 +87,18 @@ pub(super) const SUBSYSTEMS: [Subsystem; 7] = [
 const TITLE: usize = 90;
 
 /// An effect with its size, over its picture.
-pub(super) fn title(effect: &Effect, believed: &PlantParameters, joint: usize) -> String {
+pub(super) fn title(effect: &Effect, nominal: &PlantParameters, joint: usize) -> String {
     let (name, of_joint) = effect.vocabulary();
     let which = of_joint.map_or(String::new(), |_| format!(" of joint {joint}"));
     let mut title = format!("{name}{which}");
     let mut before = ": ";
-    let parameters = effect.parameters(believed);
-    for (parameter, value) in parameters.iter().zip(scene::sizes(effect, believed)) {
+    let parameters = effect.parameters(nominal);
+    for (parameter, value) in parameters.iter().zip(scene::sizes(effect, nominal)) {
         let key = parameter.quantity.name;
         if !parameter.reported && key != "sine_m" {
             continue;
         }
-        let (words, unit, factor) = spoken(key);
+        let (words, unit, factor) = display_name(key);
         let words = words.replace("sine", "amplitude");
         let size = format!("{before}{words} {} {unit}", size(factor * value));
         if title.len() + size.len() <= TITLE {
@@ -132,7 +132,7 @@ impl Explained {
                 range: parameter.bounds,
                 usual: rounded(usual),
                 shown: rounded(shown),
-                told: parameter.reported,
+                reported: parameter.reported,
             })
             .collect();
         let mut lines = vec!["[[effect]]".to_owned(), format!("name = \"{name}\"")];
@@ -160,7 +160,10 @@ impl Explained {
             parameters: numbers,
             signature: &header.signature,
             confused_with: (header.rivals.iter())
-                .map(|(name, told_apart)| Rival { name, told_apart })
+                .map(|(name, distinguished_by)| Rival {
+                    name,
+                    distinguished_by,
+                })
                 .collect(),
             command,
             lines,
@@ -197,7 +200,7 @@ impl Explained {
         text += &wrapped("Shows as: ", &capital(self.signature));
         text += "\nConfused with:\n";
         for rival in &self.confused_with {
-            text += &wrapped(&format!("  {}: ", rival.name), rival.told_apart);
+            text += &wrapped(&format!("  {}: ", rival.name), rival.distinguished_by);
         }
         match (&self.command, self.chain) {
             (Some(command), _) => {
@@ -253,7 +256,7 @@ impl Explained {
                     .replacen(first, &format!("[{first}](#{first})"), 1),
                 false => rival.name.to_owned(),
             };
-            let _ = writeln!(text, "- {name}: {}", plain(rival.told_apart));
+            let _ = writeln!(text, "- {name}: {}", plain(rival.distinguished_by));
         }
         match (&self.command, self.chain) {
             (Some(command), _) => {
@@ -279,7 +282,7 @@ impl Explained {
 impl Number {
     /// Key, words with unit, range, usual size.
     fn cells(&self) -> [String; 4] {
-        let (words, unit, factor) = spoken(self.key);
+        let (words, unit, factor) = display_name(self.key);
         let size = |value: f64| size(factor * value);
         let [low, high] = self.range.map(size);
         let unit = match unit {

@@ -9,4 +9,4 @@ mod work;
 pub(super) use command::{EXAMPLES, FleetArguments, run};
 pub(super) use page::page_of;
 pub(super) use table::FLEET;
-pub(super) use work::{KIND, Worker, told};
+pub(super) use work::{KIND, Worker, report_result};

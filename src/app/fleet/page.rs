@@ -9,7 +9,7 @@ use crate::document::{
 };
 use crate::figure::svg;
 use crate::fleet::{DeviceFound, Found, NumberChanged, NumberSeries, date_of_day, words};
-use crate::quantity::spoken::{number, spoken};
+use crate::quantity::display_name::{display_name, number};
 
 /// The page of a fleet.
 pub(in super::super) fn page_of(found: &Found) -> Result<String, AppError> {
@@ -96,7 +96,7 @@ fn devices(found: &Found) -> Section<'static> {
 fn changed(found: &Found) -> Option<Section<'static>> {
     let rows = found.devices.iter().flat_map(|device| {
         device.changed.iter().map(move |changed: &NumberChanged| {
-            let (name, unit) = spoken(&changed.number);
+            let (name, unit) = display_name(&changed.number);
             let per_day = changed.per_day.map_or(String::new(), |[slope, low, high]| {
                 format!("{} ({} to {})", number(slope), number(low), number(high))
             });
@@ -175,7 +175,7 @@ fn panel(device: &DeviceFound, series: &NumberSeries) -> Option<Panel<'static>> 
         Some((days[place], change.since.date.clone()))
     });
     let markers = at.filter(|(at, _)| (0.0..=last).contains(at));
-    let (name, unit) = spoken(&series.number);
+    let (name, unit) = display_name(&series.number);
     let label = match unit.as_str() {
         "" => name,
         unit => format!("{name} [{unit}]"),

@@ -19,7 +19,7 @@ use crate::tasks::{Head, Plan, Store, Task, name_of};
 pub(super) fn write(layout: &Layout, scenario: &Path, plan: &Path) -> Result<(), AppError> {
     let folder = plan.parent().unwrap_or(Path::new("."));
     let mut files = Files::new(folder);
-    let shared = believed(scenario, &mut files)?;
+    let shared = nominal(scenario, &mut files)?;
     let count = layout.devices.iter().map(|device| device.recordings.len());
     let head = head(scenario, folder, count.sum(), shared)?;
     let rig = is_rig(scenario);
@@ -108,7 +108,7 @@ fn head(
 }
 
 /// Files of what is believed.
-fn believed(scenario: &Path, files: &mut Files) -> Result<Vec<SourceFile>, AppError> {
+fn nominal(scenario: &Path, files: &mut Files) -> Result<Vec<SourceFile>, AppError> {
     let mut found = vec![files.one(scenario)?];
     if !is_rig(scenario) {
         let cell = LoadedCell::load(scenario)?.scenario;

@@ -42,14 +42,14 @@ pub(super) struct Asked {
 }
 
 /// What is believed.
-enum Believed {
+enum NominalModel {
     Rig(Box<RigFile>),
     Cell(Box<LoadedCell>),
 }
 
 /// Does the tasks of a plan.
 pub(in super::super) struct Worker {
-    believed: Believed,
+    nominal: NominalModel,
     folder: PathBuf,
 }
 
@@ -67,17 +67,17 @@ impl Worker {
 
     /// One for what is believed, with recordings named from a folder.
     pub(super) fn of(file: &Path, folder: &Path) -> Result<Self, AppError> {
-        let believed = match load_rig(file) {
-            Ok(rig) => Believed::Rig(Box::new(rig)),
+        let nominal = match load_rig(file) {
+            Ok(rig) => NominalModel::Rig(Box::new(rig)),
             Err(of_rig) => match LoadedCell::load(file) {
-                Ok(cell) => Believed::Cell(Box::new(cell)),
+                Ok(cell) => NominalModel::Cell(Box::new(cell)),
                 // A file of a rig that has a fault is told as such.
                 Err(_) if says_rig(file) => return Err(of_rig.into()),
                 Err(of_cell) => return Err(of_cell.into()),
             },
         };
         Ok(Self {
-            believed,
+            nominal,
             folder: folder.to_owned(),
         })
     }
@@ -117,10 +117,10 @@ impl Worker {
         state: &[Started],
     ) -> Result<(Diagnosed, Option<String>), AppError> {
         let path = self.folder.join(&asked.path);
-        let case = match &self.believed {
-            Believed::Cell(cell) => Case::of_cell(&path, cell)?,
-            Believed::Rig(rig) if path.is_dir() => Case::of_rig(rig, &path, &asked.files)?,
-            Believed::Rig(rig) => {
+        let case = match &self.nominal {
+            NominalModel::Cell(cell) => Case::of_cell(&path, cell)?,
+            NominalModel::Rig(rig) if path.is_dir() => Case::of_rig(rig, &path, &asked.files)?,
+            NominalModel::Rig(rig) => {
                 let folder = path.parent().unwrap_or(Path::new(""));
                 Case::of_rig(rig, folder, &asked.files)?
             }
@@ -139,7 +139,7 @@ fn says_rig(file: &Path) -> bool {
 }
 
 /// Exit code of a task that stands.
-pub(in super::super) fn told(store: &Store, id: &str) -> Result<ExitCode, AppError> {
+pub(in super::super) fn report_result(store: &Store, id: &str) -> Result<ExitCode, AppError> {
     let result: Diagnosed = store.read(id)?;
     if !result.reason.is_empty() {
         eprintln!("{}", result.reason);

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::told::{Copies, Job, rate, remarks};
+use super::summary::{Copies, Job, rate, remarks};
 use crate::import::ImportMap;
 use crate::import::findings::{Finding, findings};
 use crate::recording::gaps::parts;

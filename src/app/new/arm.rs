@@ -314,7 +314,7 @@ pub(super) fn placed(
         });
     };
     files[0].1 = text.into_bytes();
-    let told = format!(
+    let note = format!(
         "device on `{}`, {} N on an arm of {} m reach{}{}",
         draft.mount.flange_link,
         size.force,
@@ -328,7 +328,7 @@ pub(super) fn placed(
             _ => ", its drives' limits estimated",
         }
     );
-    Ok((files, told))
+    Ok((files, note))
 }
 
 /// The text with a place of the part at which the job runs within its bounds; or why there is none, by the first place that was tried.

@@ -1,7 +1,9 @@
 //! The charts of a diagnosis: recordings beside models, and what links lack.
 
 use crate::diagnosis::answer::Answer;
-use crate::diagnosis::answer::words::{CHANNEL_UNITS, CHANNEL_WORDS, capital, spoken, yardstick};
+use crate::diagnosis::answer::words::{
+    CHANNEL_UNITS, CHANNEL_WORDS, capital, display_name, reference_noise,
+};
 use crate::diagnosis::difference::comparison::{Balance, Compared, ComparedChannel};
 use crate::diagnosis::difference::mismatch::Mismatch;
 use crate::diagnosis::formula::unlisted::report::{ShapeRow, UnlistedReport};
@@ -62,9 +64,9 @@ pub(super) fn channel<'a>(
     let words = capital(CHANNEL_WORDS[index]);
     // A flange is not simulated: there is what was desired.
     let is_flange = !answer.details.runs.is_empty();
-    let believed = if is_flange { "desired" } else { "as believed" };
+    let nominal = if is_flange { "desired" } else { "as believed" };
     let models = [
-        (&channel.believed, believed, Role::Command, Stroke::Dashed),
+        (&channel.nominal, nominal, Role::Command, Stroke::Dashed),
         (&channel.improved, "improved", Role::Estimate, Stroke::Plain),
     ];
     let models = models
@@ -96,14 +98,14 @@ pub(super) fn channel<'a>(
     let noise = noise.filter(|n| n.channel == COLUMNS[index]).map(|n| {
         let half = NORMAL_95 * factor * n.standard_deviation;
         Band {
-            label: yardstick(answer.details.remaining.is_some()).to_owned(),
+            label: reference_noise(answer.details.remaining.is_some()).to_owned(),
             from: -half,
             to: half,
         }
     });
     let title = format!(
         "{words}: what is left; the band holds 95 % of {}",
-        yardstick(answer.details.remaining.is_some())
+        reference_noise(answer.details.remaining.is_some())
     );
     [values, chart(title, left.collect(), noise.collect())]
 }
@@ -176,8 +178,8 @@ pub(super) fn balance<'a>(balance: &Balance) -> Panel<'a> {
 
 /// Physics without a name against its variable.
 pub(super) fn unlisted<'a>(report: &UnlistedReport) -> Panel<'a> {
-    let (_, at_unit, at) = spoken(&format!("x_{}", report.at_unit));
-    let (_, unit, of) = spoken(&format!("x_{}", report.value_unit));
+    let (_, at_unit, at) = display_name(&format!("x_{}", report.at_unit));
+    let (_, unit, of) = display_name(&format!("x_{}", report.value_unit));
     // Where nothing was recorded the interval is wider than all that the term does: not drawn.
     let known = |row: &ShapeRow| row.half_width < report.peak_to_peak;
     let runs = report.shape.chunk_by(|a, b| known(a) == known(b));

@@ -8,7 +8,7 @@ use super::provenance::provenance_of;
 use crate::diagnosis::answer::words::capital;
 use crate::document::{Block, Cell, Document, Fact, Section, Table, Tone};
 use crate::metrics::labels;
-use crate::quantity::spoken::{number, spoken};
+use crate::quantity::display_name::{display_name, number};
 use crate::quantity::{UNKNOWN, change, optional, with_unit};
 
 /// The page.
@@ -52,7 +52,7 @@ pub(super) fn named(key: &str) -> (String, String) {
     let mut known = labels(true).into_iter().chain(labels(false));
     match known.find(|label| label.key == key) {
         Some(label) => (label.name, label.unit.to_owned()),
-        None => spoken(key),
+        None => display_name(key),
     }
 }
 
@@ -147,7 +147,7 @@ fn chosen<'a>(document: &Value) -> Section<'a> {
     let bound = |key: &str| list(&document["active_bounds"]).find(|b| b["variable"] == key);
     let varied = |key: &str| list(&document["variables"]).find(|v| v["key"] == key);
     let row = |(key, value): (&String, &Value)| {
-        let (name, unit) = spoken(key);
+        let (name, unit) = display_name(key);
         let own = varied(key);
         let ends = own.and_then(|own| Some([own["min"].as_f64()?, own["max"].as_f64()?]));
         let start = document["start"]["design"][key].as_f64();
@@ -212,7 +212,7 @@ fn trade_off<'a>(document: &Value, svg: &str) -> Section<'a> {
     };
     let columns = [named(second), named(minimised)].into_iter().map(with);
     let columns: Vec<String> = columns
-        .chain(keys.iter().map(|key| with(spoken(key))))
+        .chain(keys.iter().map(|key| with(display_name(key))))
         .collect();
     let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
     let row = |point: &&Value| {
@@ -249,7 +249,7 @@ fn binding<'a>(document: &Value) -> Section<'a> {
         steps.any(|step| step["variable"] == *key && step["beyond_bound"] == true)
     };
     let bounds = list(&document["active_bounds"]).map(|bound| {
-        let (name, unit) = spoken(text(&bound["variable"]));
+        let (name, unit) = display_name(text(&bound["variable"]));
         let side = match text(&bound["side"]) {
             "min" => "at least",
             _ => "at most",
@@ -326,7 +326,7 @@ fn limits<'a>(document: &Value) -> Option<Section<'a>> {
 fn steps<'a>(document: &Value) -> Section<'a> {
     let (objective, _) = named(text(&document["objectives"]["minimised"]));
     let row = |step: &Value| {
-        let (name, unit) = spoken(text(&step["variable"]));
+        let (name, unit) = display_name(text(&step["variable"]));
         let breaks: Vec<String> = list(&step["breaks"]).map(text).map(limit_words).collect();
         let remark = match (step["failure"].as_str(), breaks.is_empty()) {
             (Some(reason), _) => reason.to_owned(),

@@ -8,7 +8,7 @@ use crate::diagnosis::answer::details::remaining_errors;
 use crate::diagnosis::answer::estimate::Estimate;
 use crate::diagnosis::answer::statements::TRUSTED;
 use crate::diagnosis::answer::words::{
-    CHANNEL_WORDS, capital, in_unit, of_column, percent, yardstick,
+    CHANNEL_WORDS, capital, in_unit, of_column, percent, reference_noise,
 };
 use crate::diagnosis::answer::{Answer, FoundEffect, Verdict};
 use crate::diagnosis::difference::comparison::{Compared, Comparison};
@@ -109,7 +109,7 @@ fn facts(answer: &Answer) -> Vec<Fact> {
             ),
             _ => format!(
                 "no more than {} is left",
-                yardstick(details.remaining.is_some())
+                reference_noise(details.remaining.is_some())
             ),
         };
         add("of the mismatch explained", percent(share), left);
@@ -130,7 +130,7 @@ fn facts(answer: &Answer) -> Vec<Fact> {
             ),
             format!(
                 "{}: {} {unit}",
-                yardstick(details.remaining.is_some()),
+                reference_noise(details.remaining.is_some()),
                 significant(factor * noise, 2)
             ),
         );
@@ -163,7 +163,7 @@ fn what_is_missing<'a>(answer: &Answer) -> Option<Section<'a>> {
         .fold(0.0, |most: f64, e| most.max(e.abs()));
     let widest = widest.clamp(1e-6, 1.0);
     let rows = known.iter().map(|(effect, (name, estimate))| {
-        let (words, unit, factor) = effect.spoken(name);
+        let (words, unit, factor) = effect.display_name(name);
         let number = |v: f64| Cell::from(significant(factor * v, 4));
         let [low, high] = relative(estimate);
         // Which joint is known or not; it has no interval.
@@ -257,7 +257,7 @@ fn where_it_shows<'a>(answer: &Answer, comparison: &Comparison) -> Option<Sectio
             true => format!(
                 "The strips show when the found effects ({}) move a channel by more than three times {}.",
                 subsystems.join(", ").replace('_', " "),
-                yardstick(answer.details.remaining.is_some())
+                reference_noise(answer.details.remaining.is_some())
             ),
         };
         blocks.push(Block::Hint(hint));

@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::design::{bare, limit_words, list, named, quantity, text};
 use crate::document::{Block, Cell, Section, Table};
 use crate::quantity::UNKNOWN;
-use crate::quantity::spoken::{number, spoken};
+use crate::quantity::display_name::{display_name, number};
 
 /// The section; none if nothing was drawn at the chosen design.
 pub(super) fn robustness<'a>(document: &Value, svg: Option<&str>) -> Option<Section<'a>> {
@@ -65,7 +65,7 @@ fn quantiles(robustness: &Value) -> Table {
 
 fn drawn(robustness: &Value) -> Table {
     let row = |variable: &Value| {
-        let (name, unit) = spoken(text(&variable["key"]));
+        let (name, unit) = display_name(text(&variable["key"]));
         let cells = [name, unit, words(&variable["distribution"])];
         cells.map(Cell::from).to_vec()
     };

@@ -6,16 +6,16 @@ use crate::diagnosis::answer::details::{
     ChannelMisfit, Considered, DetectableReport, PredictionError, RuledOutReport, ToleratedNumber,
 };
 use crate::diagnosis::answer::estimate::Limit;
-use crate::diagnosis::answer::words::{odds, of_column, percent, spoken, yardstick};
+use crate::diagnosis::answer::words::{display_name, odds, of_column, percent, reference_noise};
 use crate::document::{Block, Cell, Section, Table};
 use crate::quantity::{change, significant};
 
 pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
     let details = &answer.details;
-    let yardstick = yardstick(details.remaining.is_some());
+    let reference_noise = reference_noise(details.remaining.is_some());
     let tables = [
-        misfit(&details.misfit, yardstick),
-        prediction(&details.prediction, yardstick),
+        misfit(&details.misfit, reference_noise),
+        prediction(&details.prediction, reference_noise),
     ];
     let mut blocks: Vec<Block<'a>> = tables.into_iter().flatten().map(Block::Table).collect();
     let kinds = [
@@ -29,7 +29,7 @@ pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
 }
 
 /// Departure of each channel of each recording, in multiples of `yardstick`.
-fn misfit(misfit: &[ChannelMisfit], yardstick: &str) -> Option<Table> {
+fn misfit(misfit: &[ChannelMisfit], reference_noise: &str) -> Option<Table> {
     let row = |m: &ChannelMisfit| {
         let (words, unit, factor) = of_column(&m.channel);
         let sigmas = |v: f64| Cell::from(significant(v, 3));
@@ -37,15 +37,12 @@ fn misfit(misfit: &[ChannelMisfit], yardstick: &str) -> Option<Table> {
             Cell::from(m.recording.clone()),
             Cell::from(words),
             Cell::from(m.samples.to_string()),
-            Cell::from(format!(
-                "{} {unit}",
-                significant(factor * m.believed_rms, 3)
-            )),
+            Cell::from(format!("{} {unit}", significant(factor * m.nominal_rms, 3))),
             Cell::from(format!(
                 "{} {unit}",
                 significant(factor * m.improved_rms, 3)
             )),
-            sigmas(m.believed_sigmas),
+            sigmas(m.nominal_sigmas),
             sigmas(m.tolerated_sigmas),
             sigmas(m.improved_sigmas),
             m.left_out_sigmas.map_or(Cell::from("–"), sigmas),
@@ -53,7 +50,7 @@ fn misfit(misfit: &[ChannelMisfit], yardstick: &str) -> Option<Table> {
     };
     (!misfit.is_empty()).then(|| {
         let caption = format!(
-            "What the models leave of each channel: root mean square, then a robust one in multiples of {yardstick} (1 is as much). The last column is a fit to the other recordings."
+            "What the models leave of each channel: root mean square, then a robust one in multiples of {reference_noise} (1 is as much). The last column is a fit to the other recordings."
         );
         Table::new(
             &caption,
@@ -74,14 +71,14 @@ fn misfit(misfit: &[ChannelMisfit], yardstick: &str) -> Option<Table> {
 }
 
 /// Errors on what was not fitted to.
-fn prediction(errors: &[PredictionError], yardstick: &str) -> Option<Table> {
+fn prediction(errors: &[PredictionError], reference_noise: &str) -> Option<Table> {
     let row = |e: &PredictionError| {
         let (words, unit, factor) = of_column(&e.channel);
         let number = |v: f64| Cell::from(format!("{} {unit}", significant(factor * v, 3)));
         vec![
             Cell::from(e.recording.clone()),
             Cell::from(words),
-            number(e.believed),
+            number(e.nominal),
             number(e.before),
             number(e.after),
             e.noise.map_or(Cell::from("–"), number),
@@ -99,7 +96,7 @@ fn prediction(errors: &[PredictionError], yardstick: &str) -> Option<Table> {
                 "#believed",
                 "#within tolerances",
                 "#improved",
-                &format!("#{yardstick}"),
+                &format!("#{reference_noise}"),
                 "#improved, σ",
             ],
             errors.iter().map(row).collect(),
@@ -129,12 +126,12 @@ pub(super) fn detectable<'a>(answer: &Answer) -> Option<Section<'a>> {
 pub(super) fn own_numbers<'a>(answer: &Answer) -> Option<Section<'a>> {
     let tolerated = &answer.details.tolerated;
     let row = |number: &ToleratedNumber| {
-        let (words, unit, factor) = spoken(&number.key);
+        let (words, unit, factor) = display_name(&number.key);
         let found = number.found;
-        let shift = 100.0 * (found.value / number.believed - 1.0);
+        let shift = 100.0 * (found.value / number.nominal - 1.0);
         vec![
             Cell::from(words),
-            Cell::from(significant(factor * number.believed, 4)),
+            Cell::from(significant(factor * number.nominal, 4)),
             Cell::from(significant(factor * found.value, 4)),
             Cell::from(significant(factor * found.low, 4)),
             Cell::from(significant(factor * found.high, 4)),

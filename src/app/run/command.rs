@@ -133,13 +133,13 @@ pub(super) fn one(
     }
     let interruptible = Interruptible::of_one("run", &path);
     let bar = progress::bar("simulating", quiet);
-    let told = &mut |done, total| progress::tell(&bar, done, total);
+    let progress = &mut |done, total| progress::tell(&bar, done, total);
     let outcome = job.perform(
         &source,
         &folder,
         arguments.run_options(),
         watch.as_ref(),
-        told,
+        progress,
     );
     bar.finish_and_clear();
     let outcome = outcome?;
@@ -152,7 +152,7 @@ pub(super) fn one(
         &folder,
         &outcome.names,
     )?;
-    for line in &outcome.told {
+    for line in &outcome.messages {
         eprintln!("{line}");
     }
     if let Some(watch) = watch {

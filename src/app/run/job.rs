@@ -19,7 +19,9 @@ use crate::cell::Cell;
 use crate::metrics::{BoundCheck, Summary};
 use crate::recording::csv::EdgeProfile;
 use crate::recording::provenance::Provenance;
-use crate::report::{Style, bench_markdown, bench_text, drives as told_drives, markdown, text};
+use crate::report::{
+    Style, bench_markdown, bench_text, drives as saturated_drives, markdown, text,
+};
 use crate::rig::Rig;
 use crate::run::Job;
 use crate::scenario::{BenchScenario, Scenario, files_of_cell};
@@ -47,7 +49,7 @@ pub(super) struct RunOutcome {
     /// Names of the files.
     pub names: Vec<&'static str>,
     /// Message on standard error: what stopped it, or which results lie outside their bounds.
-    pub told: Vec<String>,
+    pub messages: Vec<String>,
     /// Its exit code.
     pub code: ExitCode,
     /// Parts of a viewer's content that only the whole run gives: the scene, and the numbers.
@@ -102,14 +104,14 @@ impl Job {
         folder: &OutputFolder,
         run_options: RunOptions,
         watch: Option<&Watch>,
-        told: &mut dyn FnMut(usize, usize),
+        progress: &mut dyn FnMut(usize, usize),
     ) -> Result<RunOutcome, AppError> {
         match self {
             Self::Cell(cell) => {
-                perform_cell(self, cell, source, folder, (run_options, watch), told)
+                perform_cell(self, cell, source, folder, (run_options, watch), progress)
             }
             Self::Bench(rig) => {
-                perform_bench(self, rig, source, folder, (run_options, watch), told)
+                perform_bench(self, rig, source, folder, (run_options, watch), progress)
             }
         }
     }
@@ -121,7 +123,7 @@ fn perform_cell(
     source: &Source,
     folder: &OutputFolder,
     (run_options, watch): (RunOptions, Option<&Watch>),
-    told: &mut dyn FnMut(usize, usize),
+    progress: &mut dyn FnMut(usize, usize),
 ) -> Result<RunOutcome, AppError> {
     let (origin, content) = job.provenance(source)?;
     let target = folder.path().join(RECORDING);
@@ -135,7 +137,7 @@ fn perform_cell(
         let watching = watch.map(|watch| Listener::watching(cell, watch));
         let of_stream = streaming.iter().map(StreamingRecording::listener);
         let listeners = watching.into_iter().chain(of_stream).collect();
-        let finished = run_observed(cell, told, listeners)?;
+        let finished = run_observed(cell, progress, listeners)?;
         let verdicts = finished.bounds(cell)?;
         let title = &cell.setup.scenario.title;
         let document = SummaryDocument::new(cell, &finished, &verdicts, source, &origin).text()?;
@@ -178,13 +180,13 @@ fn perform_cell(
             sketches: &sketches,
             report: &report,
         })?;
-        let (code, mut told) = exit_code(finished.stop.as_ref(), &verdicts);
-        told.extend(drives_at_their_limit(&finished.summary));
+        let (code, mut messages) = exit_code(finished.stop.as_ref(), &verdicts);
+        messages.extend(drives_at_their_limit(&finished.summary));
         Ok(RunOutcome {
             table: text(title, &finished.summary, &verdicts, run_options.style),
             document,
             names,
-            told,
+            messages,
             code,
             shown: (scene, summary),
         })
@@ -197,10 +199,10 @@ fn perform_bench(
     source: &Source,
     folder: &OutputFolder,
     (run_options, watch): (RunOptions, Option<&Watch>),
-    told: &mut dyn FnMut(usize, usize),
+    progress: &mut dyn FnMut(usize, usize),
 ) -> Result<RunOutcome, AppError> {
     let (origin, _) = job.provenance(source)?;
-    let finished = bench::run_watched(rig, told, watch)?;
+    let finished = bench::run_watched(rig, progress, watch)?;
     let scenario = &rig.scenario;
     let verdicts = finished.bounds(rig)?;
     let document = bench::document(scenario, &finished, &verdicts, source, &origin)?;
@@ -224,7 +226,7 @@ fn perform_bench(
         sketches: &sketches,
         report: &report,
     })?;
-    let (code, told) = exit_code(finished.stop.as_ref(), &verdicts);
+    let (code, messages) = exit_code(finished.stop.as_ref(), &verdicts);
     Ok(RunOutcome {
         table: bench_text(
             &scenario.title,
@@ -234,7 +236,7 @@ fn perform_bench(
         ),
         document,
         names,
-        told,
+        messages,
         code,
         shown: (scene, options.summary_markdown),
     })
@@ -249,20 +251,20 @@ pub(super) fn exit_code(
         return (ExitCode::Stopped, vec![format!("stopped: {stop}")]);
     }
     let outside = verdicts.iter().filter(|verdict| !verdict.kept);
-    let told: Vec<String> = outside
+    let messages: Vec<String> = outside
         .map(|verdict| sentence(&verdict.name(), verdict.value, [verdict.min, verdict.max]))
         .collect();
-    match told.is_empty() {
-        true => (ExitCode::Done, told),
-        false => (ExitCode::OutsideBounds, told),
+    match messages.is_empty() {
+        true => (ExitCode::Done, messages),
+        false => (ExitCode::OutsideBounds, messages),
     }
 }
 
 /// Which drives were at their limit, when and for how long.
 fn drives_at_their_limit(summary: &Summary) -> Option<String> {
-    let told = told_drives(summary)?;
+    let drives = saturated_drives(summary)?;
     Some(format!(
-        "drives at their limit: {told} ([expect] drives_saturated_s = {{ max = .. }} sets how long they may be)"
+        "drives at their limit: {drives} ([expect] drives_saturated_s = {{ max = .. }} sets how long they may be)"
     ))
 }
 

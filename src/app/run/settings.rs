@@ -161,8 +161,8 @@ pub(in super::super) fn blamed(
     };
     let own: Vec<KeyValue> = edits.iter().filter(about).cloned().collect();
     let error = match (error, own.as_slice()) {
-        (ScenarioError::UnknownKey { place, .. }, [edit]) => ScenarioError::UnknownKey {
-            place,
+        (ScenarioError::UnknownKey { location, .. }, [edit]) => ScenarioError::UnknownKey {
+            location,
             key: edit.key().to_owned(),
             advice: template.advice(edit.key()),
         },

@@ -8,7 +8,7 @@ use super::super::error::ExitCode;
 use super::settings::{Variant, short};
 use crate::metrics::{labels, most_important};
 use crate::quantity::column;
-use crate::quantity::spoken::spoken;
+use crate::quantity::display_name::display_name;
 
 /// Columns of a terminal.
 const WIDTH: usize = 80;
@@ -139,7 +139,7 @@ fn varied(runs: &[Done]) -> Vec<Column> {
             }
         };
         let cells = runs.iter().map(cell).collect();
-        let (name, unit) = spoken(short(key(*place), &keys));
+        let (name, unit) = display_name(short(key(*place), &keys));
         match unit.as_str() {
             "" => Column::new(&name, cells),
             unit => Column::new(&format!("{name} [{unit}]"), cells),

@@ -61,12 +61,18 @@ pub(super) fn run(
             return Ok(None);
         }
         let mut before = 0;
-        let told = &mut |done: usize, total: usize| {
+        let progress = &mut |done: usize, total: usize| {
             let parts = PARTS * done / total.max(1);
             bar.inc(parts.saturating_sub(before) as u64);
             before = before.max(parts);
         };
-        let done = one(arguments, template, &variants[index], &folders[index], told);
+        let done = one(
+            arguments,
+            template,
+            &variants[index],
+            &folders[index],
+            progress,
+        );
         match &done {
             Ok(_) => interruptible.one_more(),
             Err(_) => drop(failed.fetch_add(1, Ordering::Relaxed)),
@@ -86,7 +92,7 @@ pub(super) fn run(
     let paths: Vec<PathBuf> = runs.iter().map(|run| run.folder.clone()).collect();
     write_page(&paths, &page)?;
     drop(interruptible);
-    told(arguments, &out, &runs)
+    print_result(arguments, &out, &runs)
 }
 
 fn job(template: &ScenarioTemplate, variant: &Variant) -> Result<Job, AppError> {
@@ -100,7 +106,7 @@ fn one(
     template: &ScenarioTemplate,
     variant: &Variant,
     folder: &OutputFolder,
-    told: &mut dyn FnMut(usize, usize),
+    progress: &mut dyn FnMut(usize, usize),
 ) -> Result<Done, AppError> {
     let title = variant.title(template.title());
     let source = Source::varied(template, &variant.edits, title.clone(), folder.path())?;
@@ -113,7 +119,7 @@ fn one(
     let document = match existing {
         Some(document) => document,
         None => {
-            let outcome = job.perform(&source, folder, arguments.run_options(), None, told)?;
+            let outcome = job.perform(&source, folder, arguments.run_options(), None, progress)?;
             serde_json::from_str(&outcome.document)?
         }
     };
@@ -144,7 +150,7 @@ fn existing(
 }
 
 /// Prints what came of them.
-fn told(arguments: &RunArguments, out: &Path, runs: &[Done]) -> Result<ExitCode, AppError> {
+fn print_result(arguments: &RunArguments, out: &Path, runs: &[Done]) -> Result<ExitCode, AppError> {
     if arguments.json {
         let with_folder = |run: &Done| {
             let mut document = run.document.clone();

@@ -10,4 +10,4 @@ pub(super) use command::{EXAMPLES, VaryArguments, run};
 pub(super) use page::page_of;
 pub(super) use planned::Files;
 pub(super) use table::{RUNS, SWEEP};
-pub(super) use work::{KIND, Worker, told};
+pub(super) use work::{KIND, Worker, report_result};

@@ -11,7 +11,7 @@ use crate::document::{
 };
 use crate::figure::svg;
 use crate::metrics::Label;
-use crate::quantity::spoken::{number as plain, spoken};
+use crate::quantity::display_name::{display_name, number as plain};
 use crate::quantity::{UNKNOWN, column, number};
 use crate::recording::long_column::LongColumn;
 use crate::stats::quantiles;
@@ -60,7 +60,7 @@ fn named(label: &Label) -> String {
 }
 
 fn named_key(key: &str) -> String {
-    match spoken(short(key)) {
+    match display_name(short(key)) {
         (name, unit) if unit.is_empty() => name,
         (name, unit) => format!("{name} [{unit}]"),
     }
@@ -82,7 +82,7 @@ fn drivers(swept: &Swept) -> Section<'static> {
         let sure = metric.sure().map(|driver| {
             let [low, high] = driver.interval;
             vec![
-                Cell::from(spoken(short(&driver.key)).0),
+                Cell::from(display_name(short(&driver.key)).0),
                 Cell::from(percent(driver.share)),
                 Cell::from(format!("{} to {}", percent(low), percent(high))),
                 Cell::Interval([0.0, low, driver.share, high, 1.0]),
@@ -138,7 +138,7 @@ fn unsure(metric: &MetricOfRuns) -> Option<Vec<Cell>> {
         .collect();
     let names: Vec<String> = others
         .iter()
-        .map(|driver| spoken(short(&driver.key)).0)
+        .map(|driver| display_name(short(&driver.key)).0)
         .collect();
     let most = others
         .iter()
@@ -189,7 +189,7 @@ fn varied(swept: &Swept) -> Section<'static> {
         let ends = variable.ends.map_or(UNKNOWN.to_owned(), |[low, high]| {
             format!("{} to {}", plain(low), plain(high))
         });
-        let (_, unit) = spoken(short(&variable.key));
+        let (_, unit) = display_name(short(&variable.key));
         [
             variable.key.clone(),
             ends,
@@ -209,7 +209,7 @@ fn varied(swept: &Swept) -> Section<'static> {
 /// Numbers over what drives them most, and how they are distributed.
 fn pictures(swept: &Swept, table: &Path) -> Result<Option<Section<'static>>, AppError> {
     let mut blocks = Vec::new();
-    for (label, metric) in swept.told().take(DRAWN) {
+    for (label, metric) in swept.most_important().take(DRAWN) {
         // The first is the largest share; of a number that nothing drives for sure, the run's own scatter is drawn over it all the same.
         let first = metric.sure().next().or(metric.drivers.first());
         let key = first.map(|driver| driver.key.clone());

@@ -66,7 +66,7 @@ impl Worker {
 }
 
 /// Exit code of a run that stands; what it fell short of is told.
-pub(in super::super) fn told(store: &Store, id: &str) -> Result<ExitCode, AppError> {
+pub(in super::super) fn report_result(store: &Store, id: &str) -> Result<ExitCode, AppError> {
     let numbers: Numbers = store.read(id)?;
     if !numbers.reason.is_empty() {
         eprintln!("{}", numbers.reason);

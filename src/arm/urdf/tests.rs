@@ -515,9 +515,13 @@ fn shapes_carry_their_pose_and_colour() {
     let flat = text.replace("0.5\"/></geometry>", "0\"/></geometry>");
     let arm = load(&flat, &options()).expect("without the ball");
     assert_eq!(arm.visuals.len(), 4);
-    let told =
+    let expected =
         "link `l2`: a visual shape is a sphere of 0, without extent: it is left out (line 9)";
-    assert!(arm.notes.iter().any(|note| note == told), "{:?}", arm.notes);
+    assert!(
+        arm.notes.iter().any(|note| note == expected),
+        "{:?}",
+        arm.notes
+    );
     let inside_out = text.replace("0.5\"/></geometry>", "-0.5\"/></geometry>");
     let refused = refusal(&inside_out, &options());
     assert!(
@@ -541,7 +545,7 @@ fn a_link_without_usable_collision_geometry_has_the_shape_that_is_drawn_of_it() 
     assert!(plain(&arm).is_empty(), "{:?}", arm.notes);
     let size = DVec3::new(1.0, 2.0, 3.0);
     let missing = r#"<collision><geometry><mesh filename="none.stl"/></geometry></collision>"#;
-    for (collision, told) in [
+    for (collision, expected) in [
         ("", "links without collision geometry"),
         (missing, "collision mesh `none.stl` cannot be used"),
     ] {
@@ -551,7 +555,7 @@ fn a_link_without_usable_collision_geometry_has_the_shape_that_is_drawn_of_it() 
         let notes: Vec<&String> = arm
             .notes
             .iter()
-            .filter(|note| note.contains(told))
+            .filter(|note| note.contains(expected))
             .collect();
         assert!(
             notes.len() == 1 && notes[0].contains("l2"),

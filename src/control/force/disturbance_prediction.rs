@@ -61,18 +61,18 @@ impl DisturbancePrediction {
         contact: PushOnly,
         period: f64,
     ) -> Self {
-        let believed = parameters.seals;
+        let nominal = parameters.seals;
         Self {
             parameters: *parameters,
             followed: Followed::new(device, parameters.tracking_frequency, period),
             surface: MotionTracker::new(parameters.tracking_frequency, period),
             pressed: false,
             pressed_for: 0.0,
-            seals: SealModel::new(believed),
+            seals: SealModel::new(nominal),
             level: DisturbanceLevel::new(
                 [parameters.observer_time, FRICTION_TIME],
                 parameters.friction_uncertainty,
-                believed.coulomb,
+                nominal.coulomb,
                 period,
             ),
             moving_mass: device.moving_mass,

@@ -62,32 +62,32 @@ impl ForceController {
         pressing: Option<Pressing>,
         step: f64,
     ) -> Result<Self, ScenarioError> {
-        let believed = believed(&nominal.device, sensing);
+        let sensed_device = sensed_device(&nominal.device, sensing);
         let contact = match (choice.law, pressing) {
-            (ForceLaw::OpenLoop, _) | (_, None) => return Ok(Self::pressure_map(&believed)),
+            (ForceLaw::OpenLoop, _) | (_, None) => return Ok(Self::pressure_map(&sensed_device)),
             (_, Some(pressing)) => pressing.felt(nominal),
         };
         let period = choice.steps(step) as f64 * step;
-        let delayed = delayed(&believed, sensing.force_delay());
+        let delayed = delayed(&sensed_device, sensing.force_delay());
         let parameters = parameters(&choice.law, &delayed);
         parameters
             .check(&delayed, contact, period)
-            .and_then(|()| Self::new(&parameters, &believed, contact, period))
+            .and_then(|()| Self::new(&parameters, &sensed_device, contact, period))
             .map_err(|error| refusal(choice, &parameters, period, error))
     }
 }
 
 /// The device as the controller knows it.
-fn believed(device: &DeviceParameters, sensing: &SensingParameters) -> DeviceParameters {
-    let mut believed = device.clone();
-    let regulator = &mut believed.regulator;
+fn sensed_device(device: &DeviceParameters, sensing: &SensingParameters) -> DeviceParameters {
+    let mut sensed_device = device.clone();
+    let regulator = &mut sensed_device.regulator;
     regulator.supply = attainable_set_pressure(device, &sensing.command).0;
     if let CommandChain::Real(chain) = &sensing.command {
         let lag = chain.pwm.resistance * chain.pwm.capacitance;
         regulator.time_constant += 0.5 * lag;
         regulator.dead_time += 0.5 * lag;
     }
-    believed
+    sensed_device
 }
 
 fn delayed(device: &DeviceParameters, delay: f64) -> DeviceParameters {

@@ -11,7 +11,7 @@ const START: f64 = 0.5;
 #[derive(Clone, Copy)]
 struct Case {
     /// Coulomb friction that the controller believes in, of 10 N [N].
-    believed_friction: f64,
+    nominal_friction: f64,
     /// The regulator's time constant over what the controller believes [1].
     lag_factor: f64,
     sensors: Sensors,
@@ -19,7 +19,7 @@ struct Case {
 }
 
 const IDEAL: Case = Case {
-    believed_friction: 10.0,
+    nominal_friction: 10.0,
     lag_factor: 1.0,
     sensors: Sensors::IDEAL,
     period: 1e-3,
@@ -37,14 +37,14 @@ impl Case {
     }
 
     fn controller(&self, parameters: &ControllerParameters) -> ForceController {
-        let believed = device(self.believed_friction);
-        ForceController::new(parameters, &believed, CONTACT, self.period).unwrap()
+        let nominal = device(self.nominal_friction);
+        ForceController::new(parameters, &nominal, CONTACT, self.period).unwrap()
     }
 
     fn prediction(&self) -> ControllerParameters {
-        let believed = device(self.believed_friction);
+        let nominal = device(self.nominal_friction);
         ControllerParameters::DisturbancePrediction(DisturbancePredictionParameters::tuned(
-            &believed,
+            &nominal,
         ))
     }
 
@@ -145,11 +145,11 @@ fn at_half_a_hertz_only_prediction_beats_what_waits_for_the_dead_time() {
 fn the_prediction_stands_what_is_not_known_well() {
     let cases = [
         Case {
-            believed_friction: 5.0,
+            nominal_friction: 5.0,
             ..REAL
         },
         Case {
-            believed_friction: 15.0,
+            nominal_friction: 15.0,
             ..REAL
         },
         Case {

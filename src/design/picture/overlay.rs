@@ -7,7 +7,7 @@ use super::style::{
     Area, CHOSEN, Chart, DARK, Drawn, FONT, GREY, LIMIT, PX, TEXT, inside, limits_of,
 };
 use crate::design::result::{LimitState, StudyResult};
-use crate::quantity::spoken::{raised, with_unit};
+use crate::quantity::display_name::{raised, with_unit};
 
 type Corners = [(i32, i32); 2];
 

@@ -9,7 +9,7 @@ use super::style::{
 use crate::design::error::DesignError;
 use crate::design::result::StudyResult;
 use crate::design::robustness::Robustness;
-use crate::quantity::spoken::axis;
+use crate::quantity::display_name::axis;
 
 /// Height of the title, and of a row of panels.
 const HEAD: i32 = 92 * PX;
@@ -72,15 +72,15 @@ fn heading(root: &Area<'_>, result: &StudyResult, robustness: &Robustness) -> Dr
 
 /// One quantity: the share of the draws that lies at or below each value.
 fn panel(area: &Area<'_>, result: &StudyResult, robustness: &Robustness, place: usize) -> Drawn {
-    let told = &robustness.quantiles[place];
+    let quantile = &robustness.quantiles[place];
     let mut values: Vec<(f64, bool)> = (robustness.draws.iter())
         .filter_map(|draw| Some((draw.metrics[place]?, draw.kept)))
         .collect();
     values.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let bounds: Vec<(f64, bool)> = limits_of(result, &told.metric)
+    let bounds: Vec<(f64, bool)> = limits_of(result, &quantile.metric)
         .map(|limit| (limit.bound, limit.side == "max"))
         .collect();
-    let (low, high) = extent(values.iter().map(|v| v.0).chain([told.chosen]));
+    let (low, high) = extent(values.iter().map(|v| v.0).chain([quantile.chosen]));
     // A bound that is far off would press all draws into one line.
     let near = |bound: f64| (bound - low).abs().min((bound - high).abs()) <= 2.0 * (high - low);
     let seen = bounds
@@ -112,7 +112,7 @@ fn panel(area: &Area<'_>, result: &StudyResult, robustness: &Robustness, place: 
         .y_labels(5)
         .label_style((FONT, TEXT).into_font().color(&DARK))
         .axis_desc_style((FONT, TEXT).into_font().color(&DARK))
-        .x_desc(axis(&told.metric))
+        .x_desc(axis(&quantile.metric))
         .y_desc("draws at or below [%]")
         .x_label_formatter(&|value| tick(*value, across))
         .y_label_formatter(&|value| format!("{value:.0}"))
@@ -127,7 +127,7 @@ fn panel(area: &Area<'_>, result: &StudyResult, robustness: &Robustness, place: 
         let corners = [(ends.0, 0.0), (ends.1, 100.0)];
         chart.draw_series([Rectangle::new(corners, LIMIT.mix(0.25).filled())])?;
     }
-    let chosen = vec![(told.chosen, 0.0), (told.chosen, 100.0)];
+    let chosen = vec![(quantile.chosen, 0.0), (quantile.chosen, 100.0)];
     chart.draw_series([PathElement::new(chosen, DARK.stroke_width(2 * PX as u32))])?;
     let all = robustness.runs as f64;
     let dots = values.iter().enumerate().map(|(rank, (value, kept))| {

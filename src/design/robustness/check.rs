@@ -28,7 +28,7 @@ pub(in crate::design) fn scattering(
             key: key.clone(),
             distribution: distribution(&section, keys)?,
             whole: keys.whole,
-            place: document.place(&format!("robustness.variables.{key}")),
+            location: document.location(&format!("robustness.variables.{key}")),
         })
     };
     Ok(Scattering {
@@ -51,7 +51,7 @@ fn check_key(
     let dotted = format!("robustness.variables.{key}");
     if variables.iter().any(|variable| variable.key == key) {
         return Err(ScenarioError::Misplaced {
-            place: document.place(&dotted),
+            location: document.location(&dotted),
             key: dotted,
             reason:
                 "it is a variable of the study; what is drawn is what the study does not choose"
@@ -73,7 +73,7 @@ fn check_key(
         _ => advice(key, &sections),
     };
     Err(ScenarioError::UnknownKey {
-        place: document.place(&dotted),
+        location: document.location(&dotted),
         key: dotted,
         advice: format!(
             "what is drawn is a key of [device.override] or, in quotes, \"table.key\" of a scenario; {nearest}"

@@ -47,7 +47,7 @@ pub(in crate::design) fn draw(
         Simulated { values, result }
     };
     let simulated: Vec<Simulated> = (0..scattering.runs).into_par_iter().map(simulate).collect();
-    told(study, scattering, chosen, &simulated)
+    summarise(study, scattering, chosen, &simulated)
 }
 
 /// What a result and quantiles are told of: the objective, then each limited metric once.
@@ -76,7 +76,7 @@ fn keeps(limit: &Limit, simulated: &Simulated) -> bool {
     value.is_some_and(|value| limit.excess(value) <= 0.0)
 }
 
-fn told(
+fn summarise(
     study: &Study,
     scattering: &Scattering,
     chosen: &Candidate,
@@ -113,7 +113,7 @@ fn told(
         force_range: chosen.force_range,
         scenarios: chosen.scenarios.clone(),
     };
-    let told = metrics.iter().enumerate().filter_map(|(place, metric)| {
+    let quantiles_of_metrics = metrics.iter().enumerate().filter_map(|(place, metric)| {
         let values: Vec<f64> = draws
             .iter()
             .filter_map(|draw| draw.metrics[place])
@@ -140,7 +140,7 @@ fn told(
         failed,
         all_limits: KeptShare::of(draws.iter().filter(|draw| draw.kept).count(), runs),
         limits: limits.collect(),
-        quantiles: told.collect(),
+        quantiles: quantiles_of_metrics.collect(),
         draws,
     }
 }

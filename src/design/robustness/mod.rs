@@ -16,7 +16,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use crate::keys::error::Place;
+use crate::keys::error::Location;
 
 pub(super) use check::scattering;
 pub(super) use draws::draw;
@@ -47,7 +47,7 @@ pub struct Scatter {
     /// Whether it is rounded to whole numbers.
     pub whole: bool,
     /// Where it stands in the study file.
-    pub place: Place,
+    pub location: Location,
 }
 
 /// A distribution, in its key's unit.

@@ -174,10 +174,10 @@ fn table_and_picture_tell_the_share_with_its_interval() {
     let table = crate::design::text(&study, &result);
     let share = &result.robustness.as_ref().unwrap().all_limits;
     let [low, high] = share.interval_percent;
-    let told = format!("{:.0} %  {low:.0} to {high:.0} %", share.share_percent);
+    let line = format!("{:.0} %  {low:.0} to {high:.0} %", share.share_percent);
     for part in [
         "Robustness: 50 draws at the chosen design",
-        &told,
+        &line,
         "Quantiles of the draws",
     ] {
         assert!(table.contains(part), "{part} in:\n{table}");

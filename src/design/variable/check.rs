@@ -31,7 +31,7 @@ pub(in crate::design) fn variable(
         key: key.to_owned(),
         domain,
         start: keys.start,
-        place: document.place(&format!("variables.{key}")),
+        location: document.location(&format!("variables.{key}")),
     })
 }
 
@@ -59,7 +59,7 @@ fn check_key(document: &Document<'_>, key: &str) -> Result<(), ScenarioError> {
         return Ok(());
     }
     Err(ScenarioError::UnknownKey {
-        place: document.place(&format!("variables.{key}")),
+        location: document.location(&format!("variables.{key}")),
         key: format!("variables.{key}"),
         advice: format!(
             "a variable is a key of [device.override] or, in quotes, \"table.key\" of controller, contact, process, removal or tool; {}",

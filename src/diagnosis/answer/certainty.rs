@@ -162,7 +162,7 @@ impl Diagnosis {
 
     /// Whether a variant of a kind leaves as little of a part's channel as the best explanation.
     fn leaves_as_little(&self, kind: &dyn Fn(&[&str]) -> bool) -> bool {
-        let Some(channel) = self.believed.parts.output() else {
+        let Some(channel) = self.nominal.parts.output() else {
             return false;
         };
         // A whole device's variants were compared by their evidence, and an effect that is not worth its numbers was taken out.
@@ -188,7 +188,7 @@ impl Diagnosis {
             let mut own = free.iter().filter(|f| f.quantity.name == number.name);
             let Some(own) = own.next() else { return false };
             let frees = |e: &&Effect| {
-                let parameters = e.parameters(&self.believed);
+                let parameters = e.parameters(&self.nominal);
                 parameters.iter().any(|p| p.quantity.is(&own.quantity))
             };
             let beyond: Vec<&str> = (every().chain(LINK_EFFECTS).chain(&NUMBERS_OFF))
@@ -278,7 +278,7 @@ impl Diagnosis {
     fn number_with(&self, effect: &Effect) -> Option<Estimate> {
         let has = |r: &&Ranked| r.hypothesis.effects.iter().any(|e| e.name == effect.name);
         let given = self.ranked.iter().find(has)?;
-        let of_it = estimates(&self.believed, std::slice::from_ref(given), &self.evidence);
+        let of_it = estimates(&self.nominal, std::slice::from_ref(given), &self.evidence);
         let mut own = of_it.effects.iter().filter(|(e, _)| e.name == effect.name);
         let mut numbers = own.next()?.1.iter().filter(|n| n.reported);
         numbers.next().map(Estimate::from)

@@ -16,7 +16,7 @@ use crate::diagnosis::difference::localise::{
 };
 use crate::diagnosis::difference::mismatch::Mismatch;
 use crate::diagnosis::difference::regime::{Regime, regimes};
-use crate::diagnosis::fit::hypothesis::{Hypothesis, spoken_name};
+use crate::diagnosis::fit::hypothesis::{Hypothesis, effect_display_name};
 use crate::diagnosis::fit::robust_sum;
 use crate::diagnosis::formula::unlisted::report::formula_text;
 use crate::diagnosis::recordings::evidence::Prediction;
@@ -92,7 +92,7 @@ impl Diagnosis {
             alternatives: self
                 .rivals()
                 .map(|ranked| Alternative {
-                    effects: ranked.hypothesis.spoken_names(),
+                    effects: ranked.hypothesis.effect_display_names(),
                     formula: ranked.hypothesis.unlisted().and_then(formula_text),
                     odds: ranked.odds,
                 })
@@ -121,7 +121,7 @@ impl Diagnosis {
         };
         (self.detectable.iter())
             .map(|smallest| DetectableReport {
-                effect: spoken_name(smallest.effect.name),
+                effect: effect_display_name(smallest.effect.name),
                 parameters: smallest.numbers.iter().map(number).collect(),
             })
             .collect()
@@ -130,7 +130,7 @@ impl Diagnosis {
     /// The law that an effect is which a user wrote.
     pub fn law_of(&self, effect: &Effect) -> Option<&LawText> {
         match effect.which {
-            Which::Own { place } => self.believed.own.get(place).map(|law| &*law.text),
+            Which::Own { place } => self.nominal.own.get(place).map(|law| &*law.text),
             Which::Only | Which::Joint { .. } | Which::Number { .. } => None,
         }
     }
@@ -235,7 +235,7 @@ impl Diagnosis {
         let error = |recording: &str, unseen: &Unseen| PredictionError {
             recording: recording.to_owned(),
             channel: COLUMNS[unseen.channel as usize].to_owned(),
-            believed: unseen.believed.rms,
+            nominal: unseen.nominal.rms,
             before: unseen.before.rms,
             after: unseen.after.rms,
             noise: Some(self.evidence.noise[unseen.channel as usize]),
@@ -260,7 +260,7 @@ impl Diagnosis {
             let after: Vec<f64> = after.copied().collect();
             let in_turn = Unseen {
                 channel,
-                believed: size(&self.as_believed)?,
+                nominal: size(&self.as_nominal)?,
                 before: size(&self.baseline.prediction)?,
                 after: ErrorSize::of(&after, noise)?,
             };
@@ -285,7 +285,7 @@ impl Diagnosis {
     /// Whether there is a part of the device alone.
     #[must_use]
     pub fn is_of_link(&self) -> bool {
-        self.believed.parts != DeviceParts::Whole
+        self.nominal.parts != DeviceParts::Whole
     }
 
     /// Details that are not scored.
@@ -343,15 +343,19 @@ impl Diagnosis {
         let power = |score: f64, best: f64| -0.5 * (score - best) / std::f64::consts::LN_10;
         let best = self.ranked[0].score;
         let others = self.ranked[1..].iter().map(|ranked| Considered {
-            effects: ranked.hypothesis.spoken_names(),
+            effects: ranked.hypothesis.effect_display_names(),
             in_full: true,
             log10_odds: power(ranked.score, best),
             explained_share: self.share_explained_by(&ranked.hypothesis),
         });
         let mut found: Vec<Considered> = others.collect();
-        let own = self.best().spoken_names();
+        let own = self.best().effect_display_names();
         for rough in &self.roughly {
-            let effects: Vec<String> = rough.effects.iter().map(|e| spoken_name(e)).collect();
+            let effects: Vec<String> = rough
+                .effects
+                .iter()
+                .map(|e| effect_display_name(e))
+                .collect();
             let same = |known: &[String]| {
                 known.len() == effects.len() && known.iter().all(|name| effects.contains(name))
             };
@@ -386,24 +390,24 @@ impl Diagnosis {
 
     pub(in crate::diagnosis) fn misfits(&self) -> Vec<ChannelMisfit> {
         let evidence = &self.evidence;
-        let believed = misfits(evidence, &self.as_believed.residuals);
+        let nominal = misfits(evidence, &self.as_nominal.residuals);
         let baseline = misfits(evidence, &self.baseline.prediction.residuals);
         let improved = misfits(evidence, &self.best().fit.prediction.residuals);
         let left = |recording: usize, channel: usize| {
             let left = self.ranked[0].left_out.as_ref()?;
             robust_rms(&left.residuals[recording][channel]).map(|(_, rms)| rms)
         };
-        let together = believed.iter().zip(&baseline).zip(&improved);
+        let together = nominal.iter().zip(&baseline).zip(&improved);
         together
-            .map(|((believed, baseline), improved)| ChannelMisfit {
-                recording: evidence.recordings[believed.recording].name.clone(),
-                channel: COLUMNS[believed.channel as usize].to_owned(),
-                samples: believed.samples,
-                believed_sigmas: believed.sigmas,
+            .map(|((nominal, baseline), improved)| ChannelMisfit {
+                recording: evidence.recordings[nominal.recording].name.clone(),
+                channel: COLUMNS[nominal.channel as usize].to_owned(),
+                samples: nominal.samples,
+                nominal_sigmas: nominal.sigmas,
                 tolerated_sigmas: baseline.sigmas,
                 improved_sigmas: improved.sigmas,
-                left_out_sigmas: left(believed.recording, believed.channel as usize),
-                believed_rms: believed.rms,
+                left_out_sigmas: left(nominal.recording, nominal.channel as usize),
+                nominal_rms: nominal.rms,
                 tolerated_rms: baseline.rms,
                 improved_rms: improved.rms,
                 improved_share: self.share_of_channel(improved),
@@ -483,17 +487,17 @@ impl Diagnosis {
     }
 
     fn tolerated(&self) -> Vec<ToleratedNumber> {
-        let believed = |number: &Number| {
+        let nominal = |number: &Number| {
             let free = self.best().fit.free.iter();
             let mut own = free.filter(|f| f.quantity.name == number.name);
-            own.next().map(|f| f.quantity.get(&self.believed))
+            own.next().map(|f| f.quantity.get(&self.nominal))
         };
         let numbers = self.estimates.tolerated.iter();
         numbers
             .filter_map(|number| {
                 Some(ToleratedNumber {
                     key: number.name.to_owned(),
-                    believed: believed(number)?,
+                    nominal: nominal(number)?,
                     found: Estimate::from(number),
                 })
             })
@@ -507,8 +511,8 @@ impl Diagnosis {
         Some(NextExperiment {
             name: best.experiment.name.to_owned(),
             instruction: best.experiment.instruction.clone(),
-            from: self.ranked.get(1)?.hypothesis.spoken_names(),
-            found: self.best().spoken_names(),
+            from: self.ranked.get(1)?.hypothesis.effect_display_names(),
+            found: self.best().effect_display_names(),
             sigmas: best.square.sqrt(),
             seconds: best.duration,
             others: others

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::account::Account;
 use super::estimate::Estimate;
-use super::words::spoken;
+use super::words::display_name;
 use crate::diagnosis::data_fault::report::DataFaultReport;
 use crate::diagnosis::difference::localise::NOISE_ALONE;
 use crate::diagnosis::difference::mismatch::Mismatch;
@@ -231,7 +231,8 @@ pub struct ChannelMisfit {
     /// Samples that count.
     pub samples: usize,
     /// Robust root mean square as believed.
-    pub believed_sigmas: f64,
+    #[serde(rename = "believed_sigmas")]
+    pub nominal_sigmas: f64,
     /// Moved within its tolerances.
     pub tolerated_sigmas: f64,
     /// With what was found.
@@ -240,7 +241,8 @@ pub struct ChannelMisfit {
     pub left_out_sigmas: Option<f64>,
     /// Root mean square of what the believed model leaves, in the column's unit.
     #[serde(default)]
-    pub believed_rms: f64,
+    #[serde(rename = "believed_rms")]
+    pub nominal_rms: f64,
     /// The same, moved within its tolerances.
     #[serde(default)]
     pub tolerated_rms: f64,
@@ -330,7 +332,7 @@ impl DetectableReport {
     #[must_use]
     pub fn words(&self) -> String {
         let words = self.parameters.iter().map(|parameter| {
-            let (words, unit, factor) = spoken(&parameter.name);
+            let (words, unit, factor) = display_name(&parameter.name);
             match parameter.without {
                 Some(without) => {
                     let percent = 100.0 * (parameter.value / without - 1.0);
@@ -410,7 +412,8 @@ pub struct ToleratedNumber {
     /// Dotted key.
     pub key: String,
     /// As believed.
-    pub believed: f64,
+    #[serde(rename = "believed")]
+    pub nominal: f64,
     /// As found.
     pub found: Estimate,
 }
@@ -424,7 +427,8 @@ pub struct PredictionError {
     pub channel: String,
     /// Root mean square by the model as it was believed, in the column's unit.
     #[serde(default)]
-    pub believed: f64,
+    #[serde(rename = "believed")]
+    pub nominal: f64,
     /// That by the believed model moved within its tolerances.
     pub before: f64,
     /// That by the improved one.

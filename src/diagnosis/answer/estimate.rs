@@ -148,12 +148,12 @@ pub struct Estimates {
 }
 
 /// Standard deviation of what is not in the residuals, in a quantity's unit.
-fn allowance(believed: &PlantParameters, free: &Free, value: f64, sample: f64) -> f64 {
+fn allowance(nominal: &PlantParameters, free: &Free, value: f64, sample: f64) -> f64 {
     // A frequency is told by its phase, whatever the law.
     if free.quantity.name == "frequency_hz" {
         return 0.0;
     }
-    let before = free.quantity.get(believed);
+    let before = free.quantity.get(nominal);
     let own = value - if before.is_finite() { before } else { 0.0 };
     let late = ["delay_s", "offset_s", "time_constant_s"].contains(&free.quantity.name);
     let between = if late { sample / 12f64.sqrt() } else { 0.0 };
@@ -194,9 +194,9 @@ fn settled(fit: &Fit) -> Vec<f64> {
 /// Variance of each free quantity of the first explanation over those that have it too, weighed by their probabilities, in the fit's coordinates
 /// (Bayesian model averaging: Hoeting et al., Stat. Sci. 14, 1999). A number that an effect has beyond its tolerance is another than the tolerated one: where a
 /// look-alike stands in the effect's place, that says nothing of it.
-fn between_models(believed: &PlantParameters, ranked: &[Ranked]) -> Vec<f64> {
+fn between_models(nominal: &PlantParameters, ranked: &[Ranked]) -> Vec<f64> {
     let best = &ranked[0].hypothesis.fit;
-    let first = ranked[0].hypothesis.tolerated(believed);
+    let first = ranked[0].hypothesis.tolerated(nominal);
     let of = |(index, free): (usize, &Free)| {
         let here = free.coordinate.of(best.values[index]);
         let (mut squares, mut sum) = (0.0, 0.0);
@@ -209,7 +209,7 @@ fn between_models(believed: &PlantParameters, ranked: &[Ranked]) -> Vec<f64> {
                 continue;
             }
             let same = |f: &Free| f.quantity.is(&free.quantity);
-            let of_effect = |place: &usize| *place >= other.hypothesis.tolerated(believed);
+            let of_effect = |place: &usize| *place >= other.hypothesis.tolerated(nominal);
             let place = fit.free.iter().position(same);
             if let Some(place) = place.filter(|place| (index >= first) == of_effect(place)) {
                 squares +=
@@ -229,7 +229,7 @@ fn last_of_term(hypothesis: &Hypothesis, index: usize) -> bool {
 }
 
 /// Numbers and intervals of the first of the explanations.
-pub fn estimates(believed: &PlantParameters, ranked: &[Ranked], evidence: &Evidence) -> Estimates {
+pub fn estimates(nominal: &PlantParameters, ranked: &[Ranked], evidence: &Evidence) -> Estimates {
     let hypothesis = &ranked[0].hypothesis;
     let fit = &hypothesis.fit;
     let mut covariance = covariance(evidence, fit);
@@ -237,15 +237,15 @@ pub fn estimates(believed: &PlantParameters, ranked: &[Ranked], evidence: &Evide
         at_least(&mut covariance, &left.jackknife(&fit.free));
     }
     at_least(&mut covariance, &settled(fit));
-    let first = hypothesis.tolerated(believed);
-    for (index, between) in between_models(believed, ranked).into_iter().enumerate() {
+    let first = hypothesis.tolerated(nominal);
+    for (index, between) in between_models(nominal, ranked).into_iter().enumerate() {
         covariance[(index, index)] += between;
     }
     let sample = longest_sample(evidence);
     let effects_end = fit.free.len() - hypothesis.unlisted().map_or(0, Latent::numbers);
     for (index, free) in fit.free.iter().enumerate().skip(first) {
         let slope = free.coordinate.slope(fit.values[index]);
-        let allowed = allowance(believed, free, fit.values[index], sample);
+        let allowed = allowance(nominal, free, fit.values[index], sample);
         covariance[(index, index)] += (allowed / slope).powi(2);
     }
     let number = |index: usize, reported: bool| {
@@ -256,7 +256,7 @@ pub fn estimates(believed: &PlantParameters, ranked: &[Ranked], evidence: &Evide
             [-INTERVAL, INTERVAL].map(|z| free.clamp(free.coordinate.value(at + z * deviation)));
         let interval = [ends[0].min(ends[1]), ends[0].max(ends[1])];
         let of_effect = (first..effects_end).contains(&index);
-        let without = Some(free.quantity.get(believed))
+        let without = Some(free.quantity.get(nominal))
             .filter(|v| of_effect && (free.bounds[0]..=free.bounds[1]).contains(v));
         Number {
             name: free.quantity.name,
@@ -270,13 +270,13 @@ pub fn estimates(believed: &PlantParameters, ranked: &[Ranked], evidence: &Evide
     let numbers: Vec<usize> = hypothesis
         .effects
         .iter()
-        .map(|effect| effect.parameters(believed).len())
+        .map(|effect| effect.parameters(nominal).len())
         .collect();
     let mut at = first;
     let tolerated = (0..at).map(|index| number(index, false)).collect();
     let mut effects = Vec::new();
     for (effect, own) in hypothesis.effects.iter().zip(numbers) {
-        let parameters = effect.parameters(believed);
+        let parameters = effect.parameters(nominal);
         let mut list: Vec<Number> = parameters
             .iter()
             .enumerate()

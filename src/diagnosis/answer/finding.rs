@@ -42,7 +42,7 @@ pub struct Unseen {
     /// The channel.
     pub channel: Channel,
     /// Of the believed model as it stands in the rig file.
-    pub believed: ErrorSize,
+    pub nominal: ErrorSize,
     /// Of the believed model, moved within its tolerances.
     pub before: ErrorSize,
     /// Of the best explanation.
@@ -78,7 +78,7 @@ pub struct Diagnosis {
     /// Thresholds that it was made with.
     pub settings: Settings,
     /// The rig as believed.
-    pub believed: PlantParameters,
+    pub nominal: PlantParameters,
     /// Its tolerated quantities.
     pub tolerated: Vec<Free>,
     /// The recordings, cleaned.
@@ -116,7 +116,7 @@ pub struct Diagnosis {
     /// Largest departure of the best from the recordings; none where nothing was measured.
     pub largest: Option<Largest>,
     /// Prediction of the believed model, as it stands in the rig file.
-    pub as_believed: Prediction,
+    pub as_nominal: Prediction,
     /// The believed model, moved within its tolerances.
     pub baseline: Baseline,
     /// Name of the recording to be predicted, and errors of its prediction where it has measured columns.

@@ -75,14 +75,14 @@ pub fn far_above(misfit: &[ChannelMisfit]) -> Option<usize> {
 
 /// Whether a channel of a recording is predicted worse than by the nominal model.
 #[must_use]
-pub fn is_worse(believed: f64, improved: f64, sigmas: f64) -> bool {
-    sigmas > NOISE_ALONE && improved > WORSE * believed
+pub fn is_worse(nominal: f64, improved: f64, sigmas: f64) -> bool {
+    sigmas > NOISE_ALONE && improved > WORSE * nominal
 }
 
 /// Whether a channel is predicted worse than by the nominal model, or the recording that was kept back not to its noise.
 #[must_use]
 pub fn forbids_fully(misfit: &[ChannelMisfit], prediction: &[PredictionError]) -> bool {
-    let worse = |m: &ChannelMisfit| is_worse(m.believed_rms, m.improved_rms, m.improved_sigmas);
+    let worse = |m: &ChannelMisfit| is_worse(m.nominal_rms, m.improved_rms, m.improved_sigmas);
     let mut kept = prediction.iter().filter(|e| e.recording != IN_TURN);
     misfit.iter().any(worse)
         || kept.any(|e| e.after_sigmas.is_some_and(|sigmas| sigmas > NOISE_ALONE))
@@ -241,16 +241,16 @@ mod tests {
                 "{words}: {found:?}"
             );
         };
-        let misfit = |improved: f64, believed: f64| ChannelMisfit {
+        let misfit = |improved: f64, nominal: f64| ChannelMisfit {
             recording: "ride.csv".to_owned(),
             channel: "force_n".to_owned(),
             samples: 100,
-            believed_sigmas: believed,
-            tolerated_sigmas: believed,
+            nominal_sigmas: nominal,
+            tolerated_sigmas: nominal,
             improved_sigmas: improved,
             left_out_sigmas: None,
-            believed_rms: believed,
-            tolerated_rms: believed,
+            nominal_rms: nominal,
+            tolerated_rms: nominal,
             improved_rms: improved,
             improved_share: 0.1,
         };

@@ -59,7 +59,7 @@ pub const CHANNEL_WORDS: [&str; CHANNELS.len()] =
 
 /// A name without its unit and its table, in words, with the unit and the factor that a value in SI is multiplied by.
 #[must_use]
-pub fn spoken(name: &str) -> (String, &'static str, f64) {
+pub fn display_name(name: &str) -> (String, &'static str, f64) {
     let (suffix, unit, factor) = UNITS
         .into_iter()
         .find(|(suffix, ..)| name.ends_with(suffix))
@@ -122,7 +122,7 @@ pub fn in_unit(channel: Channel, size: f64) -> String {
 
 /// Scale of departures: where no law explains all of them, that is more than noise.
 #[must_use]
-pub fn yardstick(something_remains: bool) -> &'static str {
+pub fn reference_noise(something_remains: bool) -> &'static str {
     if something_remains {
         "what no law explains"
     } else {
@@ -138,7 +138,7 @@ pub fn of_column(column: &str) -> (String, &'static str, f64) {
             let (unit, factor) = CHANNEL_UNITS[index];
             (CHANNEL_WORDS[index].to_owned(), unit, factor)
         }
-        None => spoken(column),
+        None => display_name(column),
     }
 }
 
@@ -241,7 +241,7 @@ mod tests {
     #[test]
     fn names_lose_their_unit_and_values_get_one_that_people_use() {
         let said = |name: &str| {
-            let (words, unit, factor) = spoken(name);
+            let (words, unit, factor) = display_name(name);
             (words, unit, factor)
         };
         assert_eq!(

@@ -119,9 +119,9 @@ struct Fitted {
 pub(super) fn of_channels(case: &DiagnosisInput) -> Vec<DataFault> {
     let simulated: Vec<Vec<[Vec<f64>; 4]>> = (TIME_CONSTANTS.iter())
         .map(|share| {
-            let mut plant = case.believed.clone();
+            let mut plant = case.nominal.clone();
             let quantity = REGULATOR_TIME_CONSTANT.quantity();
-            quantity.set(&mut plant, share * quantity.get(&case.believed));
+            quantity.set(&mut plant, share * quantity.get(&case.nominal));
             let of = |r: &NamedRecording| simulate(&plant, &r.recorded.inputs).readings;
             case.recordings.iter().map(of).collect()
         })
@@ -265,9 +265,9 @@ fn of_logger(case: &DiagnosisInput, fitted: &[Fitted]) -> Vec<DataFault> {
 fn by_pressure(case: &DiagnosisInput, scale: f64) -> f64 {
     let index = Channel::RegulatorPressure as usize;
     let quantity = REGULATOR_TIME_CONSTANT.quantity();
-    let nominal = quantity.get(&case.believed);
+    let nominal = quantity.get(&case.nominal);
     let fitted = |share: f64| -> (f64, f64) {
-        let mut plant = case.believed.clone();
+        let mut plant = case.nominal.clone();
         quantity.set(&mut plant, share * nominal);
         let simulated: Vec<_> = (case.recordings.iter())
             .map(|r| simulate(&plant, &r.recorded.inputs).readings)
@@ -317,9 +317,9 @@ fn late_pressure(case: &DiagnosisInput, fitted: &[Fitted]) -> Vec<DataFault> {
         return Vec::new();
     };
     let cost = |dead_time: f64| -> f64 {
-        let mut plant = case.believed.clone();
+        let mut plant = case.nominal.clone();
         let quantity = REGULATOR_DEAD_TIME.quantity();
-        quantity.set(&mut plant, quantity.get(&case.believed) + dead_time);
+        quantity.set(&mut plant, quantity.get(&case.nominal) + dead_time);
         let of = |r: &NamedRecording| -> f64 {
             let simulated = simulate(&plant, &r.recorded.inputs).readings;
             [Channel::Stroke, Channel::Force]

@@ -42,7 +42,7 @@ pub(super) fn gains(case: &DiagnosisInput) -> Vec<DataFault> {
                 initial: InitialState::AtRest,
                 ..r.recorded.inputs.clone()
             };
-            simulate(&case.believed, &inputs).readings
+            simulate(&case.nominal, &inputs).readings
         })
         .collect();
     let mut faults = Vec::new();

@@ -333,7 +333,7 @@ fn is_motion(
             let side = 6;
             let before = mean(&acceleration[i.saturating_sub(side)..i]);
             let after = mean(&acceleration[i..(i + side).min(time.len())]);
-            let limit = UNSEEN * step.size.abs() / case.believed.device.moving_mass;
+            let limit = UNSEEN * step.size.abs() / case.nominal.device.moving_mass;
             let largest = known.iter().fold(0.0f64, |most, a| most.max(a.abs()));
             (after - before).abs() > limit.max(2.0 * noise)
                 || largest > limit.max(5.0 * noise) * 3.0

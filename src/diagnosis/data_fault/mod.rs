@@ -37,7 +37,7 @@ use resample::{held, interpolated, read_at, set_impacts_aside};
 /// Finds the faults in a case and takes them off its readings and stamps.
 pub fn take_off(case: &mut DiagnosisInput) {
     let of_cell = |r: &NamedRecording| r.recorded.inputs.cell.is_some();
-    if case.believed.parts != DeviceParts::Whole || case.recordings.iter().any(of_cell) {
+    if case.nominal.parts != DeviceParts::Whole || case.recordings.iter().any(of_cell) {
         return;
     }
     let steps: [fn(&DiagnosisInput) -> Vec<DataFault>; 11] = [

@@ -35,7 +35,7 @@ pub(super) fn louder(case: &DiagnosisInput) -> Vec<DataFault> {
             let mut readings = recording.recorded.readings.clone();
             let inputs = &recording.recorded.inputs;
             let mut cleaning =
-                clean::<Device>(&inputs.time, &mut readings, &case.noise, &case.believed);
+                clean::<Device>(&inputs.time, &mut readings, &case.noise, &case.nominal);
             for (noise, values) in cleaning.noise.iter_mut().zip(&readings) {
                 *noise = noise.filter(|_| is_white(&inputs.time, values));
             }

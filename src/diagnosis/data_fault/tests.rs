@@ -85,7 +85,7 @@ fn case_of(
         }
     };
     DiagnosisInput {
-        believed: plant(),
+        nominal: plant(),
         tolerated: Vec::new(),
         noise: NOISE,
         rate: 1.0 / STEP,

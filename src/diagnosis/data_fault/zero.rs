@@ -25,7 +25,7 @@ const UNKNOWN_LOAD: f64 = 120.0;
 
 /// An outlet that is stated as absolute pressure: at the atmosphere where nothing is set.
 pub(super) fn absolute(case: &DiagnosisInput) -> Vec<DataFault> {
-    let atmosphere = case.believed.device.gas.atmosphere;
+    let atmosphere = case.nominal.device.gas.atmosphere;
     let channel = Channel::RegulatorPressure;
     let starts: Vec<Option<f64>> = (case.recordings.iter())
         .map(|r| Some(at_rest(r, channel as usize)?.0))
@@ -76,7 +76,7 @@ pub(super) fn at_start(case: &DiagnosisInput) -> Vec<DataFault> {
         let least = match channel {
             Channel::Force | Channel::Acceleration => WORTH * sheet,
             Channel::Stroke => {
-                (FAR * sheet).max(UNKNOWN_LOAD / case.believed.device.end_stop.stiffness)
+                (FAR * sheet).max(UNKNOWN_LOAD / case.nominal.device.end_stop.stiffness)
             }
             Channel::RegulatorPressure => FAR * sheet,
         };
@@ -155,7 +155,7 @@ fn zero_at_start(
     if (level(halves.0) - level(halves.1)).abs() > QUIET * 3.0 * error {
         return None;
     }
-    let expected = simulate(&case.believed, &start_of(inputs)).readings[index][0];
+    let expected = simulate(&case.nominal, &start_of(inputs)).readings[index][0];
     Some((mean - expected, error))
 }
 

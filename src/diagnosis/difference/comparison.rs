@@ -50,7 +50,7 @@ pub struct ComparedChannel {
     /// Reading, without what was set aside.
     pub measured: Vec<f64>,
     /// By the model as it was believed; of a contact flange the desired force.
-    pub believed: Vec<f64>,
+    pub nominal: Vec<f64>,
     /// By the believed model moved within its tolerances; all NaN where it cannot be simulated.
     pub tolerated: Vec<f64>,
     /// By the improved model; all NaN where it cannot be simulated.
@@ -91,7 +91,7 @@ impl Diagnosis {
     /// The comparison, the improved model as its file says it.
     #[must_use]
     pub fn comparison(&self, case: &DiagnosisInput, improved: &PlantParameters) -> Comparison {
-        let models = [&self.believed, &self.baseline.plant, improved];
+        let models = [&self.nominal, &self.baseline.plant, improved];
         let simulated = |inputs: &PlantInputs, left_out: Option<Channels>| Simulated {
             models: models.map(|plant| simulate(plant, inputs).readings),
             left_out,
@@ -134,7 +134,7 @@ impl Diagnosis {
         let mut readings = unseen.recorded.readings.clone();
         if readings.iter().flatten().any(|value| value.is_finite()) {
             let time = &unseen.recorded.inputs.time;
-            clean::<Device>(time, &mut readings, &case.noise, &self.believed);
+            clean::<Device>(time, &mut readings, &case.noise, &self.nominal);
         }
         readings
     }
@@ -145,8 +145,8 @@ impl Diagnosis {
         measured: Channels,
         simulated: &Simulated,
     ) -> Compared {
-        let [believed, tolerated, improved] = &simulated.models;
-        let output = self.believed.parts.output();
+        let [nominal, tolerated, improved] = &simulated.models;
+        let output = self.nominal.parts.output();
         let empty = measured.iter().flatten().all(|value| value.is_nan());
         let own = |all: &Channels, channel: Channel| all[channel as usize].clone();
         let nothing = || vec![f64::NAN; time.len()];
@@ -164,7 +164,7 @@ impl Diagnosis {
                 .map(|channel| ComparedChannel {
                     channel,
                     measured: own(&measured, channel),
-                    believed: own(believed, channel),
+                    nominal: own(nominal, channel),
                     tolerated: own(tolerated, channel),
                     improved: own(improved, channel),
                     left_out: (simulated.left_out.as_ref())
@@ -175,7 +175,7 @@ impl Diagnosis {
     }
 
     fn balances(&self, improved: &PlantParameters) -> Vec<Balance> {
-        match self.believed.parts.output() {
+        match self.nominal.parts.output() {
             Some(channel) => self.balance_of_output(channel).into_iter().collect(),
             None => self.balances_of_links(improved),
         }
@@ -193,7 +193,7 @@ impl Diagnosis {
         let before = of(&self.baseline.prediction.residuals);
         let explaining = regimes(&self.evidence, &best.plant, &best.trajectories, &before);
         // A slide that a motor drives has no air, whatever its numbers say.
-        let airless = self.believed.parts == DeviceParts::DrivenSlide;
+        let airless = self.nominal.parts == DeviceParts::DrivenSlide;
         let mut known = explaining.iter().map(|regime| regime.variable);
         let known = known.find(|name| !airless || !OF_AIR.contains(name));
         let variable = known.unwrap_or(TIME);
@@ -215,7 +215,7 @@ impl Diagnosis {
                 // A link that no variable tells of is shown over time, so that every number said of it is in the file.
                 let variable = regimes.first().map_or(TIME, |regime| regime.variable);
                 let values = values_of(variable, &self.evidence, improved, &held.trajectories)?;
-                let after = left_by(link.link, &self.evidence, &held, &self.believed);
+                let after = left_by(link.link, &self.evidence, &held, &self.nominal);
                 let channel = match link.link {
                     Link::Regulator => Channel::RegulatorPressure,
                     Link::Piston | Link::Contact => Channel::Force,
@@ -266,7 +266,7 @@ pub fn of_flange(
             channels: vec![ComparedChannel {
                 channel: Channel::Force,
                 measured: run.force.clone(),
-                believed: run.desired.clone(),
+                nominal: run.desired.clone(),
                 tolerated: vec![f64::NAN; run.time.len()],
                 improved,
                 left_out: vec![f64::NAN; run.time.len()],

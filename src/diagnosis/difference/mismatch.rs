@@ -41,22 +41,22 @@ pub struct Interval {
 }
 
 /// The improved model without its effects, its other parameters kept.
-pub fn without_effects(believed: &PlantParameters, hypothesis: &Hypothesis) -> PlantParameters {
+pub fn without_effects(nominal: &PlantParameters, hypothesis: &Hypothesis) -> PlantParameters {
     let fit = &hypothesis.fit;
-    let kept = hypothesis.tolerated(believed);
-    with_values(believed, &fit.free[..kept], &fit.values[..kept])
+    let kept = hypothesis.tolerated(nominal);
+    with_values(nominal, &fit.free[..kept], &fit.values[..kept])
 }
 
 /// The intervals, recording by recording, channel by channel.
 pub fn intervals(
     evidence: &Evidence,
-    believed: &PlantParameters,
+    nominal: &PlantParameters,
     hypothesis: &Hypothesis,
 ) -> Vec<Interval> {
     if hypothesis.finds_nothing() {
         return Vec::new();
     }
-    let bare = without_effects(believed, hypothesis);
+    let bare = without_effects(nominal, hypothesis);
     let mut found = Vec::new();
     for (recording, measured) in evidence.recordings.iter().enumerate() {
         let with = simulate(&hypothesis.fit.prediction.plant, &measured.inputs).readings;

@@ -97,10 +97,10 @@ fn square(evidence: &Evidence, best: &Fit, rival: &PlantParameters, inputs: &Pla
         normal[(i, i)] += 1e-9 * normal[(i, i)] + 1e-9;
     }
     let slope = DVector::from_fn(count, |i, _| product(&columns[i], &difference));
-    let told = normal
+    let explained = normal
         .cholesky()
         .map_or(0.0, |c| slope.dot(&c.solve(&slope)));
-    (whole - told).max(0.0)
+    (whole - explained).max(0.0)
 }
 
 #[cfg(test)]

@@ -43,11 +43,11 @@ impl Hypothesis {
     }
 
     /// Names of the effects as people read them, the term without a name last.
-    pub fn spoken_names(&self) -> Vec<String> {
+    pub fn effect_display_names(&self) -> Vec<String> {
         let effects = self.effects.iter();
         let unnamed = self.unlisted().map(|_| UNLISTED.to_owned());
         effects
-            .map(|effect| spoken_name(effect.name))
+            .map(|effect| effect_display_name(effect.name))
             .chain(unnamed)
             .collect()
     }
@@ -58,11 +58,11 @@ impl Hypothesis {
     }
 
     /// Number of the free quantities that are tolerated ones; the effects', phases and those of a term without a name follow.
-    pub fn tolerated(&self, believed: &PlantParameters) -> usize {
+    pub fn tolerated(&self, nominal: &PlantParameters) -> usize {
         let own: usize = self
             .effects
             .iter()
-            .map(|effect| effect.parameters(believed).len())
+            .map(|effect| effect.parameters(nominal).len())
             .sum();
         let is_phase = |f: &&Free| self.effects.iter().any(|e| e.has_phase(&f.quantity));
         let phases = self.fit.free.iter().filter(is_phase).count();
@@ -70,10 +70,10 @@ impl Hypothesis {
     }
 
     /// Places of an effect's numbers among the free quantities.
-    pub fn numbers_of(&self, believed: &PlantParameters, index: usize) -> Range<usize> {
-        let count = |effect: &&'static Effect| effect.parameters(believed).len();
+    pub fn numbers_of(&self, nominal: &PlantParameters, index: usize) -> Range<usize> {
+        let count = |effect: &&'static Effect| effect.parameters(nominal).len();
         let before: usize = self.effects[..index].iter().map(count).sum();
-        let first = self.tolerated(believed) + before;
+        let first = self.tolerated(nominal) + before;
         first..first + count(&self.effects[index])
     }
 }
@@ -90,7 +90,7 @@ pub(in crate::diagnosis) fn is_equivalent(one: &Hypothesis, other: &Hypothesis) 
 }
 
 /// Name of an effect, with the joint that it is about.
-pub fn spoken_name(effect: &str) -> String {
+pub fn effect_display_name(effect: &str) -> String {
     match vocabulary(effect) {
         (name, Some(joint)) => format!("{name} (joint {joint})"),
         (name, None) => name.to_owned(),

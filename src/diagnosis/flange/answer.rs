@@ -51,14 +51,14 @@ impl FlangeDiagnosis {
     pub fn missing(&self) -> Vec<&'static str> {
         let limit = THERE * self.noise;
         let any = |shows: &dyn Fn(&RunMetrics) -> bool| self.runs.iter().any(|(_, s)| shows(s));
-        let believed = self.time_constant * (1.0 / BAND).ln() + AVERAGED;
+        let nominal = self.time_constant * (1.0 / BAND).ln() + AVERAGED;
         let shown = [
             (
                 "contact_impact",
                 any(&|s| s.peak > s.desired.max(s.before) * (1.0 + BAND) + limit),
             ),
             ("contact_ringing", any(&|s| s.ringing > limit)),
-            ("settling", any(&|s| s.settling > LATE * believed)),
+            ("settling", any(&|s| s.settling > LATE * nominal)),
             ("steady_force_error", any(&|s| s.steady.abs() > limit)),
             (
                 "force_error_while_moving",
@@ -402,7 +402,7 @@ mod tests {
     use super::*;
 
     /// A flange that is as believed: the force rises first order from contact on.
-    fn as_believed() -> Run {
+    fn as_nominal() -> Run {
         let time: Vec<f64> = (0..6000).map(|i| -0.5 + 8e-4 * f64::from(i)).collect();
         // Noise of a computer: what matters is that it is there.
         let noise = |i: usize| 0.08 * ((i * 7919 % 101) as f64 / 50.0 - 1.0);
@@ -450,7 +450,7 @@ mod tests {
 
     #[test]
     fn a_flange_that_is_as_believed_lacks_nothing_and_one_that_is_off_lacks_that_alone() {
-        let mut run = as_believed();
+        let mut run = as_nominal();
         let answer = of(&run).answer(0.0);
         assert_eq!(
             answer.verdict,
@@ -468,7 +468,7 @@ mod tests {
 
     #[test]
     fn a_run_that_ends_soon_after_contact_is_refused() {
-        let mut run = as_believed();
+        let mut run = as_nominal();
         for values in [
             &mut run.time,
             &mut run.force,

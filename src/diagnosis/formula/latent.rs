@@ -42,7 +42,7 @@ const IN_FULL: usize = 2;
 /// Iterations of the full fit.
 const FULL_ITERATIONS: usize = 25;
 /// Standard deviation that is believed of a term's level or of a wave, in the port's scale [1].
-const BELIEVED: f64 = 20.0;
+const NOMINAL: f64 = 20.0;
 /// Standard deviation that is believed of the rise from one knot to the next, in the port's scale [1].
 const RISES_BY: f64 = 2.0;
 /// Shares of its value where it is surest below which a term does not act [1]: both are tried, and the fit decides.
@@ -165,18 +165,18 @@ fn free_of_latent(latent: &Latent) -> Vec<Free> {
         Basis::Hats { .. } => {
             let before = std::iter::once(0.0).chain(c.clone());
             let rises = c.zip(before).map(|(c, before)| c - before);
-            let believed = std::iter::once(BELIEVED).chain(std::iter::repeat(RISES_BY));
+            let nominal = std::iter::once(NOMINAL).chain(std::iter::repeat(RISES_BY));
             let rises = (0..count)
                 .map(|i| registry::LATENT_RISE.quantity().of(i))
                 .zip(rises)
-                .zip(believed);
+                .zip(nominal);
             rises.map(|(rise, by)| free(rise, by)).collect()
         }
         Basis::Waves { .. } => {
             let waves = (0..count)
                 .map(|i| registry::LATENT_COEFFICIENT.quantity().of(i))
                 .zip(c);
-            waves.map(|wave| free(wave, BELIEVED)).collect()
+            waves.map(|wave| free(wave, NOMINAL)).collect()
         }
         Basis::Formula(_) => Vec::new(),
     };

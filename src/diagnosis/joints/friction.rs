@@ -56,7 +56,7 @@ pub struct JointFriction {
     /// Its standard deviation [N m].
     pub deviation: f64,
     /// The believed value [N m].
-    pub believed: f64,
+    pub nominal: f64,
     /// Readings that count as independent.
     pub count: f64,
 }
@@ -77,7 +77,7 @@ const LEAST_CHANGE: f64 = 5.0;
 pub fn joint_friction(
     joint: usize,
     drives: &[DriveLoad],
-    believed: f64,
+    nominal: f64,
     tolerance: f64,
 ) -> Option<JointFriction> {
     let (mut change, mut product, mut largest, mut rated) = (0.0, 0.0, 0.0f64, 0.0f64);
@@ -120,8 +120,8 @@ pub fn joint_friction(
         deviation: scatter
             .hypot(tolerance * largest)
             .hypot(RESOLVED * rated)
-            .hypot(KNOWN * believed),
-        believed,
+            .hypot(KNOWN * nominal),
+        nominal,
         count: count * independent,
     })
 }
@@ -182,7 +182,7 @@ impl JointFriction {
     /// Whether it differs from what is believed, by Schwarz's criterion, as for any effect.
     #[must_use]
     pub fn differs(&self) -> bool {
-        let gain = ((self.friction - self.believed) / self.deviation).powi(2);
+        let gain = ((self.friction - self.nominal) / self.deviation).powi(2);
         gain > self.count.max(1.0).ln() + Settings::DEFAULT.look_elsewhere
     }
 

@@ -65,7 +65,7 @@ fn residuals(
 
 /// Fits the bandwidth of all servos alike; none where no encoder was recorded. `noise` is the encoders' [rad].
 #[must_use]
-pub fn servo_link(axes: &[Axes], noise: f64, believed: f64) -> Option<ServoLink> {
+pub fn servo_link(axes: &[Axes], noise: f64, nominal: f64) -> Option<ServoLink> {
     let joints = axes.first()?.commands.len();
     let cost = |bandwidth: f64| -> f64 {
         (0..joints)
@@ -74,7 +74,7 @@ pub fn servo_link(axes: &[Axes], noise: f64, believed: f64) -> Option<ServoLink>
             .sum()
     };
     let count = (0..joints)
-        .flat_map(|joint| residuals(axes, joint, noise, believed))
+        .flat_map(|joint| residuals(axes, joint, noise, nominal))
         .count();
     if count == 0 {
         return None;
@@ -83,8 +83,8 @@ pub fn servo_link(axes: &[Axes], noise: f64, believed: f64) -> Option<ServoLink>
     let spacing = (high - low) / TRIED as f64;
     let tried = (0..=TRIED).map(|i| low + spacing * i as f64);
     let mut costs: Vec<(f64, f64)> = tried.map(|u| (cost(u.exp()), u)).collect();
-    if believed.is_finite() {
-        costs.push((cost(believed), believed.ln()));
+    if nominal.is_finite() {
+        costs.push((cost(nominal), nominal.ln()));
     }
     costs.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (mut from, mut to) = (costs[0].1 - spacing, costs[0].1 + spacing);
@@ -113,7 +113,7 @@ pub fn servo_link(axes: &[Axes], noise: f64, believed: f64) -> Option<ServoLink>
     Some(ServoLink {
         bandwidth,
         deviation: (2.0 / curvature.max(1e-12)).sqrt(),
-        gain: cost(believed) - best,
+        gain: cost(nominal) - best,
         count,
         weight: 1.0,
         left,
@@ -123,13 +123,8 @@ pub fn servo_link(axes: &[Axes], noise: f64, believed: f64) -> Option<ServoLink>
 /// The same of motors that a servo of its own moves, which loads and friction push aside: what is left is not noise, and counts for as many samples as are
 /// independent (first-order autocorrelation, Bartlett, J. R. Stat. Soc. 8, 1946). A lag faster than the servo [Hz] is the servo's own.
 #[must_use]
-pub fn pushed_servo_link(
-    axes: &[Axes],
-    noise: f64,
-    believed: f64,
-    servo: f64,
-) -> Option<ServoLink> {
-    let mut link = servo_link(axes, noise, believed)?;
+pub fn pushed_servo_link(axes: &[Axes], noise: f64, nominal: f64, servo: f64) -> Option<ServoLink> {
+    let mut link = servo_link(axes, noise, nominal)?;
     let (mut square, mut next, mut count) = (0.0, 0.0, 0.0);
     for recording in axes {
         for joint in 0..recording.commands.len() {
@@ -214,8 +209,8 @@ mod tests {
         );
         assert!(slow.deviation < 0.01);
         assert!(slow.left.iter().all(|left| (left - 1.0).abs() < 0.1));
-        let believed = servo_link(&axes(25.0), NOISE, 25.0).unwrap();
-        assert!(!believed.differs(), "{believed:?}");
+        let nominal = servo_link(&axes(25.0), NOISE, 25.0).unwrap();
+        assert!(!nominal.differs(), "{nominal:?}");
     }
 
     #[test]

@@ -31,7 +31,7 @@ pub struct NamedRecording {
 #[derive(Debug, Clone)]
 pub struct DiagnosisInput {
     /// The rig as believed.
-    pub believed: PlantParameters,
+    pub nominal: PlantParameters,
     /// Its tolerated quantities.
     pub tolerated: Vec<Free>,
     /// Standard deviation of each sensor's noise as its sheet has it, in the order of [`CHANNELS`].
@@ -143,8 +143,7 @@ pub fn prepare(case: &DiagnosisInput) -> Result<Prepared, RecordedError> {
     for recording in &case.recordings {
         let mut readings = recording.recorded.readings.clone();
         let inputs = recording.recorded.inputs.clone();
-        let mut cleaning =
-            clean::<Device>(&inputs.time, &mut readings, &case.noise, &case.believed);
+        let mut cleaning = clean::<Device>(&inputs.time, &mut readings, &case.noise, &case.nominal);
         for (channel, lost) in CHANNELS.into_iter().zip(&mut cleaning.lost) {
             let mut faults = case.data_faults.iter();
             if faults.any(|fault| fault.sets_aside(channel, &recording.name)) {
@@ -155,7 +154,7 @@ pub fn prepare(case: &DiagnosisInput) -> Result<Prepared, RecordedError> {
             .recorded
             .check(&recording.file, &cleaning.noise, &case.noise)?;
         let name = &recording.name;
-        if case.believed.parts == DeviceParts::Whole {
+        if case.nominal.parts == DeviceParts::Whole {
             notes.extend(missing(name, &readings, &case.noise));
         }
         let held = inputs.initial.samples();
@@ -185,7 +184,7 @@ pub fn prepare(case: &DiagnosisInput) -> Result<Prepared, RecordedError> {
             readings,
         });
     }
-    let noise = believed_noise(&cleanings, &case.noise);
+    let noise = nominal_noise(&cleanings, &case.noise);
     Ok(Prepared {
         evidence: Evidence::new(measured, noise),
         cleanings,
@@ -210,7 +209,7 @@ fn missing(
 }
 
 /// Noise of each channel: the sheet's, unless the recordings show clearly another.
-fn believed_noise(cleanings: &[Cleaning], sheet: &[f64; CHANNELS.len()]) -> [f64; CHANNELS.len()] {
+fn nominal_noise(cleanings: &[Cleaning], sheet: &[f64; CHANNELS.len()]) -> [f64; CHANNELS.len()] {
     std::array::from_fn(|channel| {
         let found = cleanings.iter().filter_map(|c| c.noise[channel]);
         let sheet = sheet[channel];
@@ -231,7 +230,7 @@ mod tests {
             noise: vec![Some(noise), None, Some(0.0), Some(1.2)],
             ..Cleaning::default()
         };
-        let noise = believed_noise(&[shown(3.0), shown(3.2), shown(0.9)], &[1.0; 4]);
+        let noise = nominal_noise(&[shown(3.0), shown(3.2), shown(0.9)], &[1.0; 4]);
         assert_eq!(noise, [3.0, 1.0, 1.0, 1.0]);
     }
 }

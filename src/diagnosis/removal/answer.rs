@@ -1,7 +1,7 @@
 //! A diagnosis of a removal table as diagnosis.json has it, and in sentences.
 
 use super::law::{Deviation, TableRow};
-use super::select::{Left, RemovalDiagnosis, Rival, Told as Value};
+use super::select::{EffectValue as Value, Left, RemovalDiagnosis, Rival};
 use crate::diagnosis::answer::account::SectionKind;
 use crate::diagnosis::answer::details::{
     DETAILS_SCHEMA, Details, FamilyMember, FamilyReport, NextExperiment, PredictionError,
@@ -16,7 +16,7 @@ use crate::quantity::{counted, significant};
 const VAGUE: f64 = 0.3;
 
 /// What the account is of.
-pub struct Told<'a> {
+pub struct AnswerContext<'a> {
     /// Name of the case.
     pub case: &'a str,
     /// Whether the tool moves with a feed.
@@ -29,31 +29,37 @@ pub struct Told<'a> {
 
 /// The answer.
 #[must_use]
-pub fn answer(diagnosis: &RemovalDiagnosis, told: &Told<'_>, seconds: f64) -> Answer {
+pub fn answer(diagnosis: &RemovalDiagnosis, context: &AnswerContext<'_>, seconds: f64) -> Answer {
     let mut details = Details {
         schema: DETAILS_SCHEMA,
-        case: told.case.to_owned(),
+        case: context.case.to_owned(),
         ..Details::default()
     };
     details.account.headline = headline(diagnosis);
     let effects = diagnosis.effects.iter();
     let found: Vec<String> = effects
-        .map(|value| sentence(diagnosis, value, told.is_feed))
+        .map(|value| sentence(diagnosis, value, context.is_feed))
         .collect();
     let parts = [
         (SectionKind::Missing, found),
         (SectionKind::Remaining, left(diagnosis)),
         (SectionKind::Ambiguous, ambiguous(diagnosis)),
-        (SectionKind::RuledOut, not_needed(diagnosis, told.is_feed)),
-        (SectionKind::UnseenRun, unseen(diagnosis, told.unseen)),
-        (SectionKind::NextExperiment, next(diagnosis, told.is_feed)),
-        (SectionKind::Recordings, rows(diagnosis, told)),
+        (
+            SectionKind::RuledOut,
+            not_needed(diagnosis, context.is_feed),
+        ),
+        (SectionKind::UnseenRun, unseen(diagnosis, context.unseen)),
+        (
+            SectionKind::NextExperiment,
+            next(diagnosis, context.is_feed),
+        ),
+        (SectionKind::Recordings, rows(diagnosis, context)),
     ];
     for (kind, paragraphs) in parts {
         details.account.add(kind, paragraphs);
     }
     details.families = families(diagnosis);
-    details.prediction = predictions(diagnosis, told.unseen);
+    details.prediction = predictions(diagnosis, context.unseen);
     details.next_experiment = experiment(diagnosis);
     let [before, after] = [diagnosis.before.log, diagnosis.after.log].map(|rms| rms * rms);
     details.explained_share = (before > 0.0).then(|| (1.0 - after / before).max(0.0));
@@ -125,9 +131,9 @@ fn effect(diagnosis: &RemovalDiagnosis, value: &Value) -> FoundEffect {
         1.0
     };
     let [middle, low, high] = value.value.map(|v| v * scale);
-    let believed = diagnosis.believed.number(value.deviation) * scale;
+    let nominal = diagnosis.nominal.number(value.deviation) * scale;
     let own = Estimate {
-        without: Some(believed).filter(|v| v.is_finite()),
+        without: Some(nominal).filter(|v| v.is_finite()),
         ..Estimate::new(middle, low, high)
     };
     let mut parameters = vec![(value.deviation.key().to_owned(), own)];
@@ -227,19 +233,19 @@ fn number([value, low, high]: [f64; 3]) -> String {
 }
 
 fn sentence(diagnosis: &RemovalDiagnosis, value: &Value, is_feed: bool) -> String {
-    let believed = diagnosis.believed.number(value.deviation);
+    let nominal = diagnosis.nominal.number(value.deviation);
     let exponent = |what: &str| {
         format!(
             "The removed volume grows as {what} to the power {}, believed {}.",
             number(value.value),
-            significant(believed, 3)
+            significant(nominal, 3)
         )
     };
     match value.deviation {
         Deviation::Coefficient => format!(
             "At the reference settings a new tool takes off {} mm3, believed {}.",
             number(value.value.map(|v| v * 1e9)),
-            significant(believed * 1e9, 3)
+            significant(nominal * 1e9, 3)
         ),
         Deviation::Force => exponent(if diagnosis.found.threshold > 0.0 {
             "the force above the threshold"
@@ -252,7 +258,7 @@ fn sentence(diagnosis: &RemovalDiagnosis, value: &Value, is_feed: bool) -> Strin
             format!(
                 "The removed volume goes as the feed to the power {}, believed {}.",
                 number([-value, -high, -low]),
-                significant(-believed, 3)
+                significant(-nominal, 3)
             )
         }
         Deviation::Time => exponent("the grinding time"),
@@ -260,12 +266,12 @@ fn sentence(diagnosis: &RemovalDiagnosis, value: &Value, is_feed: bool) -> Strin
         Deviation::Threshold => format!(
             "Below a force of {} N nothing comes off, believed {}.",
             number(value.value),
-            significant(believed, 3)
+            significant(nominal, 3)
         ),
         Deviation::Sag => format!(
             "The cutting speed falls by {} % per newton of force, believed {}.",
             number(value.value.map(|v| 100.0 * v)),
-            significant(100.0 * believed, 3)
+            significant(100.0 * nominal, 3)
         ),
         Deviation::Wear => format!(
             "The tool wears: from the freshest row to the most worn it loses {} % of what it takes off.",
@@ -284,14 +290,14 @@ fn errors(left: &Left) -> String {
 }
 
 fn left(diagnosis: &RemovalDiagnosis) -> Vec<String> {
-    let mut told = format!("The believed law leaves {}", errors(&diagnosis.before));
-    told += &if diagnosis.effects.is_empty() {
+    let mut text = format!("The believed law leaves {}", errors(&diagnosis.before));
+    text += &if diagnosis.effects.is_empty() {
         ".".to_owned()
     } else {
         format!(", what was found {}.", errors(&diagnosis.after))
     };
     vec![
-        told,
+        text,
         format!(
             "With each row predicted by a fit to the others it is {} RMS of the logarithm.",
             significant(diagnosis.left_out, 2)
@@ -300,7 +306,7 @@ fn left(diagnosis: &RemovalDiagnosis) -> Vec<String> {
 }
 
 fn ambiguous(diagnosis: &RemovalDiagnosis) -> Vec<String> {
-    let told = diagnosis.rivals.iter().filter(|rival| rival.odds > 0.01).map(|rival| {
+    let rivals = diagnosis.rivals.iter().filter(|rival| rival.odds > 0.01).map(|rival| {
         let names = names(&rival.deviations).join(" + ").replace('_', " ");
         let odds = if rival.odds < 1.0 {
             format!("1 to {}", significant(1.0 / rival.odds, 2))
@@ -310,11 +316,11 @@ fn ambiguous(diagnosis: &RemovalDiagnosis) -> Vec<String> {
         let rms = significant(rival.rms, 2);
         format!("In place of it {names} would do: odds {odds}, it leaves {rms} RMS of the logarithm.")
     });
-    told.collect()
+    rivals.collect()
 }
 
 fn not_needed(diagnosis: &RemovalDiagnosis, is_feed: bool) -> Vec<String> {
-    let told = |value: &Value| {
+    let describe = |value: &Value| {
         let [_, low, high] = value.value;
         let vague = 0.5 * (high - low) > VAGUE;
         let quantity = quantity(value.deviation, is_feed);
@@ -364,16 +370,16 @@ fn not_needed(diagnosis: &RemovalDiagnosis, is_feed: bool) -> Vec<String> {
             ),
         }
     };
-    let mut sentences: Vec<String> = diagnosis.not_needed.iter().map(told).collect();
-    let untold: Vec<&str> = diagnosis
-        .untold
+    let mut sentences: Vec<String> = diagnosis.not_needed.iter().map(describe).collect();
+    let undetermined: Vec<&str> = diagnosis
+        .unreported
         .iter()
         .map(|of| quantity(*of, is_feed))
         .collect();
-    if !untold.is_empty() {
+    if !undetermined.is_empty() {
         sentences.push(format!(
             "The table cannot tell how the volume depends on {}: not stated, the same in all rows, or bound to what was found.",
-            untold.join(", ")
+            undetermined.join(", ")
         ));
     }
     sentences
@@ -397,7 +403,7 @@ fn unseen(diagnosis: &RemovalDiagnosis, rows: &[TableRow]) -> Vec<String> {
     if rows.is_empty() {
         return Vec::new();
     }
-    let [before, after] = [&diagnosis.believed, &diagnosis.found].map(|law| Left::of(law, rows));
+    let [before, after] = [&diagnosis.nominal, &diagnosis.found].map(|law| Left::of(law, rows));
     let nothing = match after.nothing {
         0 => String::new(),
         some => format!(
@@ -414,7 +420,7 @@ fn unseen(diagnosis: &RemovalDiagnosis, rows: &[TableRow]) -> Vec<String> {
 }
 
 /// A row of the settings at which a rival says something else, and the ratio of what the two predict there.
-fn told_apart(diagnosis: &RemovalDiagnosis, rival: &Rival) -> Option<(TableRow, f64)> {
+fn distinguishable(diagnosis: &RemovalDiagnosis, rival: &Rival) -> Option<(TableRow, f64)> {
     let at = &diagnosis.found.reference;
     let [least, most] = span(&diagnosis.rows, |row| row.force);
     let row = |force: f64| TableRow {
@@ -442,10 +448,10 @@ fn told_apart(diagnosis: &RemovalDiagnosis, rival: &Rival) -> Option<(TableRow, 
 }
 
 fn next(diagnosis: &RemovalDiagnosis, is_feed: bool) -> Vec<String> {
-    let mut told = Vec::new();
+    let mut proposals = Vec::new();
     let rival = diagnosis.rivals.first().filter(|rival| rival.odds > 0.01);
     if let Some(rival) = rival
-        && let Some((row, apart)) = told_apart(diagnosis, rival)
+        && let Some((row, apart)) = distinguishable(diagnosis, rival)
     {
         let names = names(&rival.deviations).join(" + ").replace('_', " ");
         let [found, other] = [&diagnosis.found, &rival.law].map(|law| law.volume_of(&row) * 1e9);
@@ -454,7 +460,7 @@ fn next(diagnosis: &RemovalDiagnosis, is_feed: bool) -> Vec<String> {
             diagnosis.after.log,
         );
         let runs = ((3.0 * beyond / many.ln()).powi(2).ceil()).clamp(1.0, 99.0);
-        told.push(format!(
+        proposals.push(format!(
             "Runs at {} N tell what was found from {names}: {} against {} mm3 there, at the reference settings otherwise; {} would do.",
             significant(row.force, 2),
             significant(found, 2),
@@ -462,12 +468,12 @@ fn next(diagnosis: &RemovalDiagnosis, is_feed: bool) -> Vec<String> {
             counted(runs as usize, "run"),
         ));
     }
-    for of in &diagnosis.untold {
+    for of in &diagnosis.unreported {
         if matches!(
             of,
             Deviation::Speed | Deviation::Time | Deviation::Area | Deviation::Force
         ) {
-            told.push(format!(
+            proposals.push(format!(
                 "Runs at twice and at half the {}, all else as it was, would tell its exponent.",
                 quantity(*of, is_feed)
             ));
@@ -480,18 +486,18 @@ fn next(diagnosis: &RemovalDiagnosis, is_feed: bool) -> Vec<String> {
             Deviation::Speed | Deviation::Time | Deviation::Area
         );
         if exponent && 0.5 * (high - low) > VAGUE {
-            told.push(format!(
+            proposals.push(format!(
                 "A wider range of the {} would tell its exponent.",
                 quantity(value.deviation, is_feed)
             ));
         }
     }
-    told
+    proposals
 }
 
 fn experiment(diagnosis: &RemovalDiagnosis) -> Option<NextExperiment> {
     let rival = diagnosis.rivals.first().filter(|rival| rival.odds > 0.01)?;
-    let (row, apart) = told_apart(diagnosis, rival)?;
+    let (row, apart) = distinguishable(diagnosis, rival)?;
     let found: Vec<Deviation> = diagnosis.effects.iter().map(|v| v.deviation).collect();
     Some(NextExperiment {
         name: "force_beyond_the_table".to_owned(),
@@ -504,15 +510,15 @@ fn experiment(diagnosis: &RemovalDiagnosis) -> Option<NextExperiment> {
     })
 }
 
-fn rows(diagnosis: &RemovalDiagnosis, told: &Told<'_>) -> Vec<String> {
+fn rows(diagnosis: &RemovalDiagnosis, context: &AnswerContext<'_>) -> Vec<String> {
     let mut notes = vec![format!(
         "{} were fitted.",
         counted(diagnosis.rows.len(), "row")
     )];
-    if told.rows_of_model > 0 {
+    if context.rows_of_model > 0 {
         notes.push(format!(
             "{} of the table are marked as no measurements of their own and count less; they scatter less than measurements may, so that what is left is a lower bound.",
-            counted(told.rows_of_model, "row")
+            counted(context.rows_of_model, "row")
         ));
     }
     let lines = |rows: &[TableRow]| {
@@ -543,7 +549,7 @@ fn predictions(diagnosis: &RemovalDiagnosis, unseen: &[TableRow]) -> Vec<Predict
     let error = |recording: &str, before: f64, after: f64| PredictionError {
         recording: recording.to_owned(),
         channel: "log_removed_volume".to_owned(),
-        believed: before,
+        nominal: before,
         before,
         after,
         noise: None,
@@ -555,7 +561,7 @@ fn predictions(diagnosis: &RemovalDiagnosis, unseen: &[TableRow]) -> Vec<Predict
         diagnosis.before.log,
         diagnosis.left_out,
     )];
-    let [before, after] = [&diagnosis.believed, &diagnosis.found].map(|law| Left::of(law, unseen));
+    let [before, after] = [&diagnosis.nominal, &diagnosis.found].map(|law| Left::of(law, unseen));
     if after.rows > 0 && before.rows > 0 {
         errors.push(error("rows kept back", before.log, after.log));
     }

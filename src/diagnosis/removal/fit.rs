@@ -67,12 +67,12 @@ pub(super) fn rms(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// Fits; none where rows are too few for the numbers or do not tell them apart.
-pub(super) fn fit(rows: &[TableRow], believed: &TableLaw, free: &[Deviation]) -> Option<Fit> {
+pub(super) fn fit(rows: &[TableRow], nominal: &TableLaw, free: &[Deviation]) -> Option<Fit> {
     let lines = [Deviation::Threshold, Deviation::Sag];
     let searched: Vec<Deviation> = lines.into_iter().filter(|d| free.contains(d)).collect();
-    let law = along(rows, *believed, free, &searched)?;
+    let law = along(rows, *nominal, free, &searched)?;
     let inner = linear(rows, &law, free)?;
-    finish(rows, believed, free, inner.0)
+    finish(rows, nominal, free, inner.0)
 }
 
 /// Searches the threshold, the sag, or neither, each for the best of those behind it.
@@ -203,18 +203,13 @@ fn slope(law: &TableLaw, of: Deviation, row: &TableRow) -> f64 {
 }
 
 /// Residuals, leverages and standard errors of a fit.
-fn finish(
-    rows: &[TableRow],
-    believed: &TableLaw,
-    free: &[Deviation],
-    law: TableLaw,
-) -> Option<Fit> {
+fn finish(rows: &[TableRow], nominal: &TableLaw, free: &[Deviation], law: TableLaw) -> Option<Fit> {
     let volume = law.volume?;
     let residuals: Vec<f64> = rows
         .iter()
         .map(|row| (row.volume / volume).ln() - law.log_ratio(row))
         .collect();
-    let hidden = believed.volume.is_none() && !free.contains(&Deviation::Coefficient);
+    let hidden = nominal.volume.is_none() && !free.contains(&Deviation::Coefficient);
     let numbers = free.len() + usize::from(hidden);
     if rows.len() <= numbers || residuals.iter().any(|r| !r.is_finite()) {
         return None;

@@ -19,7 +19,7 @@ const TELLS: f64 = 10.0;
 
 /// A deviation with its value and interval.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Told {
+pub struct EffectValue {
     /// Which.
     pub deviation: Deviation,
     /// Value, and the ends of its 95 % interval [SI].
@@ -76,17 +76,17 @@ impl Left {
 #[derive(Debug, Clone)]
 pub struct RemovalDiagnosis {
     /// The believed law, its coefficient fitted where it states none.
-    pub believed: TableLaw,
+    pub nominal: TableLaw,
     /// The law with what was found.
     pub found: TableLaw,
     /// Deviations found.
-    pub effects: Vec<Told>,
+    pub effects: Vec<EffectValue>,
     /// Probability that the volume goes with the force otherwise than nominal, whatever the form [1], and of each form that was looked at.
     pub by_force: (f64, Vec<(Deviation, f64)>),
     /// Deviations that were looked for and are not needed, with the values that they would have beside those found.
-    pub not_needed: Vec<Told>,
+    pub not_needed: Vec<EffectValue>,
     /// Deviations that the table cannot tell: a setting that does not vary, or varies with another.
-    pub untold: Vec<Deviation>,
+    pub unreported: Vec<Deviation>,
     /// Other forms that explain it nearly as well.
     pub rivals: Vec<Rival>,
     /// Errors before, after, and of an exponent of the force alone.
@@ -107,7 +107,7 @@ pub struct RemovalDiagnosis {
 #[must_use]
 pub fn diagnose_table(
     table: &[TableRow],
-    believed: &TableLaw,
+    nominal: &TableLaw,
     measured_speed: bool,
 ) -> Option<RemovalDiagnosis> {
     let settings = |row: &TableRow| [row.force, row.time, row.speed, row.area, row.wear];
@@ -123,9 +123,9 @@ pub fn diagnose_table(
     };
     let (mut rows, incomplete): (Vec<TableRow>, Vec<TableRow>) =
         table.iter().cloned().partition(|row| complete(&row));
-    let (candidates, mut untold) = candidates(&rows, believed, measured_speed);
-    let aside = set_aside(&mut rows, believed, &candidates);
-    let models = models(&rows, believed, &candidates);
+    let (candidates, mut unreported) = candidates(&rows, nominal, measured_speed);
+    let aside = set_aside(&mut rows, nominal, &candidates);
+    let models = models(&rows, nominal, &candidates);
     let count = candidates.len().max(1);
     let forms = Forms::of(&models, &rows);
     let least = (0..models.len()).min_by(|a, b| {
@@ -134,7 +134,7 @@ pub fn diagnose_table(
     })?;
     let chosen = forms.plainest(&models, least);
     let best = &models[chosen];
-    let start = fit(&rows, believed, &[])?;
+    let start = fit(&rows, nominal, &[])?;
     let evidence: Vec<f64> = (0..models.len())
         .map(|index| forms.criterion(&models, index) - forms.criterion(&models, chosen))
         .collect();
@@ -153,7 +153,7 @@ pub fn diagnose_table(
     let any = any.map(|(_, e)| (-0.5 * e).exp()).sum::<f64>() / whole;
     let tried = OF_FORCE.into_iter().filter(|of| candidates.contains(of));
     let by_force = (any.min(1.0), tried.map(|of| (of, confidence(of))).collect());
-    let told = |fitted: &Fit, of: Deviation| Told {
+    let found = |fitted: &Fit, of: Deviation| EffectValue {
         deviation: of,
         value: interval(fitted, of),
         confidence: confidence(of).min(sure_by_levels(&rows, &start.law, fitted, of)),
@@ -162,20 +162,20 @@ pub fn diagnose_table(
     for of in candidates.iter().filter(|of| !best.free.contains(of)) {
         let mut free = best.free.clone();
         free.push(*of);
-        match fit(&rows, believed, &free) {
-            Some(fitted) => not_needed.push(told(&fitted, *of)),
-            None => untold.push(*of),
+        match fit(&rows, nominal, &free) {
+            Some(fitted) => not_needed.push(found(&fitted, *of)),
+            None => unreported.push(*of),
         }
     }
     let mut every = rows.clone();
     every.extend(aside.iter().cloned());
     Some(RemovalDiagnosis {
-        believed: start.law,
+        nominal: start.law,
         found: best.law,
-        effects: best.free.iter().map(|of| told(best, *of)).collect(),
+        effects: best.free.iter().map(|of| found(best, *of)).collect(),
         by_force,
         not_needed,
-        untold,
+        unreported,
         rivals: rivals(&models, chosen, &forms),
         before: Left::of(&start.law, &every),
         after: Left::of(&best.law, &every),
@@ -189,7 +189,7 @@ pub fn diagnose_table(
 /// Deviations that rows can tell by themselves, and those that they cannot.
 fn candidates(
     rows: &[TableRow],
-    believed: &TableLaw,
+    nominal: &TableLaw,
     measured_speed: bool,
 ) -> (Vec<Deviation>, Vec<Deviation>) {
     let spread = |of: &dyn Fn(&TableRow) -> f64| {
@@ -202,7 +202,7 @@ fn candidates(
     };
     let force = spread(&|row| row.force);
     let looked = |of: &Deviation| match of {
-        Deviation::Coefficient => believed.volume.is_some(),
+        Deviation::Coefficient => nominal.volume.is_some(),
         // A speed that was measured under load has lost already what it loses.
         Deviation::Sag => force && !measured_speed,
         Deviation::Force | Deviation::Threshold => force,
@@ -212,18 +212,18 @@ fn candidates(
         Deviation::Area => spread(&|row| row.area),
     };
     let moot = |of: &Deviation| match of {
-        Deviation::Coefficient => believed.volume.is_none(),
+        Deviation::Coefficient => nominal.volume.is_none(),
         Deviation::Sag => measured_speed,
         _ => false,
     };
-    let (told, others): (Vec<_>, Vec<_>) = Deviation::ALL.into_iter().partition(looked);
-    (told, others.into_iter().filter(|of| !moot(of)).collect())
+    let (found, others): (Vec<_>, Vec<_>) = Deviation::ALL.into_iter().partition(looked);
+    (found, others.into_iter().filter(|of| !moot(of)).collect())
 }
 
 /// Takes out rows that lie further from all that the law may be than chance puts any of so many.
 fn set_aside(
     rows: &mut Vec<TableRow>,
-    believed: &TableLaw,
+    nominal: &TableLaw,
     candidates: &[Deviation],
 ) -> Vec<TableRow> {
     let curved = [Deviation::Threshold, Deviation::Sag];
@@ -235,7 +235,7 @@ fn set_aside(
     let most = (SET_ASIDE_MOST * rows.len() as f64) as usize;
     let mut aside = Vec::new();
     while aside.len() < most {
-        let Some(fitted) = fit(rows, believed, &free).filter(|f| f.freedom() > 3) else {
+        let Some(fitted) = fit(rows, nominal, &free).filter(|f| f.freedom() > 3) else {
             break;
         };
         let (freedom, squares) = (fitted.freedom() as f64, fitted.squares);
@@ -261,7 +261,7 @@ fn set_aside(
 }
 
 /// Every set of deviations fitted: forms of the force's law times all others.
-fn models(rows: &[TableRow], believed: &TableLaw, candidates: &[Deviation]) -> Vec<Fit> {
+fn models(rows: &[TableRow], nominal: &TableLaw, candidates: &[Deviation]) -> Vec<Fit> {
     use Deviation::{Force, Sag, Threshold};
     // A threshold beside a sag is hardly told from an exponent in any table.
     let forms: [&[Deviation]; 5] = [&[], &[Force], &[Threshold], &[Sag], &[Force, Threshold]];
@@ -286,7 +286,7 @@ fn models(rows: &[TableRow], believed: &TableLaw, candidates: &[Deviation]) -> V
                 .copied()
                 .chain(with.map(|(_, of)| *of))
                 .collect();
-            fits.extend(fit(rows, believed, &free).filter(possible));
+            fits.extend(fit(rows, nominal, &free).filter(possible));
         }
     }
     fits
@@ -388,7 +388,7 @@ impl Forms {
 
 /// Most that levels of a setting can say for its exponent: with so few the scatter from level to level is known as badly (degrees of freedom of clustered
 /// errors: Cameron and Miller, J. Human Resources 50, 2015).
-fn sure_by_levels(rows: &[TableRow], believed: &TableLaw, fitted: &Fit, of: Deviation) -> f64 {
+fn sure_by_levels(rows: &[TableRow], nominal: &TableLaw, fitted: &Fit, of: Deviation) -> f64 {
     let setting = |row: &TableRow| match of {
         Deviation::Force => row.force,
         Deviation::Speed => row.speed,
@@ -407,7 +407,7 @@ fn sure_by_levels(rows: &[TableRow], believed: &TableLaw, fitted: &Fit, of: Devi
         .saturating_sub(1)
         .min(fitted.freedom())
         .max(1);
-    let off = (fitted.law.number(of) - believed.number(of)) / error.max(f64::MIN_POSITIVE);
+    let off = (fitted.law.number(of) - nominal.number(of)) / error.max(f64::MIN_POSITIVE);
     1.0 - chance_beyond(off, freedom as f64)
 }
 

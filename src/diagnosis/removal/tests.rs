@@ -61,7 +61,7 @@ fn names(diagnosis: &RemovalDiagnosis) -> Vec<Deviation> {
     diagnosis
         .effects
         .iter()
-        .map(|told| told.deviation)
+        .map(|found| found.deviation)
         .collect()
 }
 
@@ -75,8 +75,12 @@ fn planted(truth: Truth, expected: &[(Deviation, f64)]) -> (usize, usize, Vec<us
         named += usize::from(expected.iter().all(|(of, _)| found.contains(of)));
         others += usize::from(found.iter().any(|of| expected.iter().all(|(e, _)| e != of)));
         for ((of, value), held) in expected.iter().zip(&mut held) {
-            let told = diagnosis.effects.iter().find(|told| told.deviation == *of);
-            *held += usize::from(told.is_none_or(|t| t.value[1] <= *value && *value <= t.value[2]));
+            let found = diagnosis
+                .effects
+                .iter()
+                .find(|found| found.deviation == *of);
+            *held +=
+                usize::from(found.is_none_or(|t| t.value[1] <= *value && *value <= t.value[2]));
         }
     }
     println!("named {named}, others {others}, held {held:?} of 30");
@@ -157,7 +161,7 @@ fn a_setting_that_does_not_vary_is_not_told() {
         row.speed = 10.0;
     }
     let diagnosis = diagnose_table(&rows, &preston(), false).unwrap();
-    assert!(diagnosis.untold.contains(&Deviation::Speed));
+    assert!(diagnosis.unreported.contains(&Deviation::Speed));
     assert!(!names(&diagnosis).contains(&Deviation::Speed));
 }
 

@@ -77,7 +77,7 @@ impl<'a> Change<'a> {
     fn of(search: &'a Search<'a>, best: &'a Hypothesis, effect: &'static Effect) -> Option<Self> {
         let plant = &best.fit.prediction.plant;
         let usual = effect.usual(plant);
-        let free = free_of(effect, &search.believed, &usual);
+        let free = free_of(effect, &search.nominal, &usual);
         let now: Vec<f64> = free.iter().map(|f| f.quantity.get(plant)).collect();
         let mut change = Self {
             search,
@@ -192,7 +192,7 @@ impl<'a> Change<'a> {
 
     fn numbers(&self, values: &[f64]) -> Vec<DetectableNumber> {
         let plant = &self.best.fit.prediction.plant;
-        let parameters = self.effect.parameters(&self.search.believed);
+        let parameters = self.effect.parameters(&self.search.nominal);
         let place = |name: &str| parameters.iter().position(|p| p.quantity.name == name);
         let amplitude = place("sine_m").zip(place("cosine_m"));
         let amplitude = amplitude.map(|(sine, cosine)| DetectableNumber {

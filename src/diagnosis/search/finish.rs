@@ -55,13 +55,13 @@ impl Search<'_> {
             .map(|h| self.refit(h, Refit::FULL))
             .collect();
         // Of a part of the device all such variants are fitted and told (`super::ruled_out`).
-        let own = match self.believed.parts {
+        let own = match self.nominal.parts {
             DeviceParts::Whole => self.shown.len()..best.effects.len(),
             _ => 0..0,
         };
         for index in own {
             let effect = best.effects[index];
-            let numbers = |e: &Effect| e.parameters(&self.believed).len();
+            let numbers = |e: &Effect| e.parameters(&self.nominal).len();
             let plain = |e: &&&'static Effect| e.excludes(effect) && numbers(e) < numbers(effect);
             for plain in self.candidates.iter().filter(plain) {
                 let Some(other) = self.exchanged(best, index, plain) else {
@@ -100,35 +100,33 @@ impl Search<'_> {
                     .starts(&self.clues(best, &[], &[]))
                     .into_iter()
                     .next()?,
-                false => (effect.parameters(&self.believed).iter())
+                false => (effect.parameters(&self.nominal).iter())
                     .map(|parameter| parameter.quantity.get(there))
                     .collect(),
             };
-            let own = free_of(effect, &self.believed, &start)
-                .into_iter()
-                .map(|f| {
-                    let same = |other: &&Free| other.quantity.is(&f.quantity);
-                    match best.fit.free.iter().find(same) {
-                        Some(_) => f.from_where(there),
-                        None => f,
-                    }
-                });
+            let own = free_of(effect, &self.nominal, &start).into_iter().map(|f| {
+                let same = |other: &&Free| other.quantity.is(&f.quantity);
+                match best.fit.free.iter().find(same) {
+                    Some(_) => f.from_where(there),
+                    None => f,
+                }
+            });
             let own: Vec<Free> = own.collect();
-            free.retain(|f| !own.iter().any(|o| same(o, f, &self.believed)));
+            free.retain(|f| !own.iter().any(|o| same(o, f, &self.nominal)));
             free.extend(own);
         }
         let here = best.fit.free_from_here();
         let phases = here.iter().copied();
         free.extend(phases.filter(|f| effects.iter().any(|e| e.has_phase(&f.quantity))));
-        let mut believed = self.believed.clone();
+        let mut nominal = self.nominal.clone();
         if let Some(term) = best.unlisted() {
-            believed.latent = Some(term.clone());
+            nominal.latent = Some(term.clone());
             free.extend_from_slice(&here[here.len() - term.numbers()..]);
         }
         let limit = Limit::FULL;
         Some(Hypothesis {
             depends_on: best.depends_on.clone(),
-            ..self.fitted(effects, (&believed, None), &free, FULL, limit)
+            ..self.fitted(effects, (&nominal, None), &free, FULL, limit)
         })
     }
 
@@ -270,8 +268,8 @@ impl Search<'_> {
     pub(super) fn without(&self, hypothesis: &Hypothesis, index: usize) -> Option<Hypothesis> {
         let fit = &hypothesis.fit;
         let plant = &fit.prediction.plant;
-        let own = hypothesis.tolerated(&self.believed);
-        let numbers = hypothesis.numbers_of(&self.believed, index);
+        let own = hypothesis.tolerated(&self.nominal);
+        let numbers = hypothesis.numbers_of(&self.nominal, index);
         let phase = |f: &Free| hypothesis.effects[index].has_phase(&f.quantity);
         let kept = fit.free_from_here().into_iter().enumerate();
         let others: Vec<Free> = kept
@@ -281,14 +279,14 @@ impl Search<'_> {
         let mut free: Vec<Free> = self
             .tolerated
             .iter()
-            .filter(|f| !others.iter().any(|o| same(o, f, &self.believed)))
+            .filter(|f| !others.iter().any(|o| same(o, f, &self.nominal)))
             .map(|f| f.from_where(plant))
             .collect();
         free.extend(others);
         let mut effects = hypothesis.effects.clone();
         effects.remove(index);
         // What was not needed is missed at no sample.
-        let from = (&self.believed, None);
+        let from = (&self.nominal, None);
         let limit = Limit::of(LIGHTER);
         let near = self.fitted(effects.clone(), from, &free, LAST, limit);
         if self.score(&near) < self.score(hypothesis) {

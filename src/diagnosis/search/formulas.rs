@@ -82,7 +82,7 @@ impl Search<'_> {
         scale: &Scale,
         observer: &mut Observer<'_>,
     ) -> Vec<Hypothesis> {
-        if self.believed.parts != DeviceParts::Whole {
+        if self.nominal.parts != DeviceParts::Whole {
             return Vec::new();
         }
         let within = |h: &&Hypothesis| {
@@ -121,7 +121,7 @@ impl Search<'_> {
         let Some(best) = full.first() else { return };
         if scale.is_adequate(best)
             || best.unlisted().is_some()
-            || self.believed.parts != DeviceParts::Whole
+            || self.nominal.parts != DeviceParts::Whole
             || self.is_spent()
         {
             return;

@@ -27,7 +27,7 @@ impl Search<'_> {
     ) {
         while let Some(best) = full.first()
             && best.unlisted().is_none()
-            && self.believed.parts == DeviceParts::Whole
+            && self.nominal.parts == DeviceParts::Whole
             && !self.is_spent()
         {
             let own = self.shown.len()..best.effects.len();
@@ -70,7 +70,7 @@ impl Search<'_> {
             return;
         }
         let effects = self.shown.iter().map(|shown| shown.effect).collect();
-        let from = (&self.believed, None);
+        let from = (&self.nominal, None);
         let nominal = self.fitted(effects, from, &free, LAST, Limit::of(LIGHTER));
         observer(&Step::Variation.of(&nominal, format!("score {:.1}", self.score(&nominal))));
         full.push(nominal);
@@ -79,7 +79,7 @@ impl Search<'_> {
 
     /// The nominal model with some numbers of another: what else the other has, such as air that warms up in place of air at one temperature, is not in it.
     fn with_numbers_of(&self, plant: &PlantParameters, numbers: &[Free]) -> PlantParameters {
-        let mut nominal = self.believed.clone();
+        let mut nominal = self.nominal.clone();
         for f in numbers {
             f.quantity.set(&mut nominal, f.quantity.get(plant));
         }
@@ -89,7 +89,7 @@ impl Search<'_> {
     /// What an effect of a hypothesis does to the channel that it moves most ([`Self::moved_by`]).
     fn influence(&self, hypothesis: &Hypothesis, index: usize) -> f64 {
         let plant = &hypothesis.fit.prediction.plant;
-        let own = hypothesis.effects[index].parameters(&self.believed);
+        let own = hypothesis.effects[index].parameters(&self.nominal);
         let is_own = |f: &&Free| own.iter().any(|p| p.quantity.is(&f.quantity));
         let others = hypothesis.fit.free.iter().filter(|f| !is_own(f));
         let others: Vec<Free> = others.copied().collect();
@@ -137,8 +137,8 @@ mod tests {
     /// A hypothesis of an effect with numbers that are not fitted.
     fn with(search: &Search<'_>, name: &str, numbers: &[f64]) -> Hypothesis {
         let effect: &'static Effect = every().find(|e| e.name == name).unwrap();
-        let free = free_of(effect, &search.believed, numbers);
-        let from = (&search.believed, None);
+        let free = free_of(effect, &search.nominal, numbers);
+        let from = (&search.nominal, None);
         search.fitted(vec![effect], from, &free, LAST, Limit::of(0))
     }
 

@@ -56,18 +56,18 @@ pub fn known_fit(
             if effects.iter().any(|other| other.excludes(effect)) {
                 continue;
             }
-            let usual = effect.usual(&search.believed);
+            let usual = effect.usual(&search.nominal);
             let start = if values.len() == usual.len() {
                 values
             } else {
                 &usual
             };
             effects.push(effect);
-            free.extend(free_of(effect, &search.believed, start));
+            free.extend(free_of(effect, &search.nominal, start));
         }
         search.fitted(
             effects,
-            (&search.believed, None),
+            (&search.nominal, None),
             &free,
             STAGES,
             Limit::of(MOST),
@@ -90,7 +90,7 @@ pub fn known_fit(
         left_out: None,
         hypothesis,
     }];
-    let numbers = estimates(&search.believed, &ranked, evidence);
+    let numbers = estimates(&search.nominal, &ranked, evidence);
     Some(KnownFit {
         effects: numbers.effects,
         tolerated: numbers.tolerated,

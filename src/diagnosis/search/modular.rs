@@ -32,7 +32,7 @@ impl Search<'_> {
         let settled = full.first().and_then(|best| self.regulator_alone(best));
         let Some(settled) = settled else { return };
         for free in &mut self.tolerated {
-            let own = settled.iter().find(|own| same(own, free, &self.believed));
+            let own = settled.iter().find(|own| same(own, free, &self.nominal));
             *free = *own.unwrap_or(free);
         }
         let hopeless = self.settings.far_behind * self.score(&full[0]);
@@ -74,7 +74,7 @@ impl Search<'_> {
             return None;
         }
         let variances = covariance(&own, &alone).diagonal();
-        let tolerated = hypothesis.tolerated(&self.believed);
+        let tolerated = hypothesis.tolerated(&self.nominal);
         let of = |(place, free): (usize, &Free)| {
             let value = alone.values[place];
             let deviation = variances[place].max(0.0).sqrt() * free.coordinate.slope(value);
@@ -97,7 +97,7 @@ impl Search<'_> {
         let moves = |index: &usize| self.moves_outlet(fitted, *index);
         let found: Vec<usize> = (0..fitted.free.len()).filter(moves).collect();
         for (index, effect) in hypothesis.effects.iter().enumerate() {
-            let numbers = hypothesis.numbers_of(&self.believed, index);
+            let numbers = hypothesis.numbers_of(&self.nominal, index);
             let is_own = matches!(effect.subsystem, Subsystem::Regulator | Subsystem::Sensors);
             if !is_own && found.iter().any(|index| numbers.contains(index)) {
                 return None;

@@ -69,9 +69,9 @@ pub(in crate::diagnosis) fn variant(
     effects: &[&'static Effect],
     stages: &[Stage],
 ) -> Option<Fit> {
-    let believed = &search.believed;
+    let nominal = &search.nominal;
     let clues = Clues {
-        plant: believed,
+        plant: nominal,
         largest_force: 0.0,
         periodic: &[],
         bumps: &[],
@@ -82,11 +82,11 @@ pub(in crate::diagnosis) fn variant(
     let tried = (0..most).map(|turn| {
         let mut free = search.tolerated.clone();
         for (effect, starts) in effects.iter().zip(&starts) {
-            let own = free_of(effect, believed, &starts[turn.min(starts.len() - 1)]);
-            free.retain(|f| !own.iter().any(|o| same(o, f, believed)));
+            let own = free_of(effect, nominal, &starts[turn.min(starts.len() - 1)]);
+            free.retain(|f| !own.iter().any(|o| same(o, f, nominal)));
             free.extend(own);
         }
-        let from = (believed, None);
+        let from = (nominal, None);
         fit(search.evidence, from, (&free, &[]), stages, Limit::of(40))
     });
     tried.min_by(|a, b| a.cost().total_cmp(&b.cost()))

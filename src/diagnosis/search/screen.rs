@@ -147,7 +147,7 @@ impl Search<'_> {
 
     /// Where an effect stands that frees what is tolerated: small ones lie just beyond the tolerance.
     fn start_within(&self, from: &Hypothesis, effect: &Effect) -> Option<Vec<f64>> {
-        let parameters = effect.parameters(&self.believed);
+        let parameters = effect.parameters(&self.nominal);
         let is_tolerated =
             |quantity: &Quantity| self.tolerated.iter().any(|f| f.quantity.is(quantity));
         let all = !parameters.is_empty() && parameters.iter().all(|p| is_tolerated(&p.quantity));
@@ -167,14 +167,14 @@ impl Search<'_> {
             .zip(&from.fit.columns);
         fitted
             // What an effect frees is no longer held to its tolerance.
-            .filter(|((f, _), _)| !new.iter().any(|n| same(n, f, &self.believed)))
+            .filter(|((f, _), _)| !new.iter().any(|n| same(n, f, &self.nominal)))
             .map(|((f, value), column)| (f.from(*value), column.clone()))
             .unzip()
     }
 
     /// Prediction of a hypothesis with one more effect at a start.
     fn started(&self, from: &Hypothesis, start: &Start, stage: &Stage) -> Prediction {
-        let new = start.free(&self.believed);
+        let new = start.free(&self.nominal);
         let known = &from.fit.prediction;
         let values: Vec<f64> = new.iter().map(|f| f.start).collect();
         let plant = with_values(&known.plant, &new, &values);
@@ -190,7 +190,7 @@ impl Search<'_> {
         there: &Prediction,
         stage: &Stage,
     ) -> Option<Promise> {
-        let new = start.free(&self.believed);
+        let new = start.free(&self.nominal);
         if start.effect.subsystem == Subsystem::Sensors || start.effect.phase.is_some() {
             return None;
         }
@@ -225,7 +225,7 @@ impl Search<'_> {
         there: &Prediction,
         stage: &Stage,
     ) -> Promise {
-        let new = start.free(&self.believed);
+        let new = start.free(&self.nominal);
         let (mut free, mut columns) = self.beside(from, &new);
         let own = free.len();
         free.extend(new);
@@ -246,7 +246,7 @@ impl Search<'_> {
         stages: &[Stage],
         iterations: usize,
     ) -> Hypothesis {
-        let new = start.free(&self.believed);
+        let new = start.free(&self.nominal);
         let (kept, columns) = self.beside(from, &new);
         let is_phase = |f: &Free| from.effects.iter().any(|e| e.has_phase(&f.quantity));
         let of_term =
@@ -389,7 +389,7 @@ mod tests {
         let names: Vec<&str> = found.fit.free.iter().map(|f| f.quantity.name).collect();
         let of_term = free[0].quantity.name;
         assert_eq!(names, ["bias_n", "drift_n_per_s", of_term, of_term]);
-        assert_eq!(found.numbers_of(&search.believed, 0), 0..2);
+        assert_eq!(found.numbers_of(&search.nominal, 0), 0..2);
         assert_eq!(found.depends_on, ["stroke_m"]);
     }
 
@@ -423,6 +423,6 @@ mod tests {
             (second - 2.1).abs() < 0.05 && (third + 1.8).abs() < 0.05,
             "{second} {third}"
         );
-        assert_eq!(found.tolerated(&search.believed), 0);
+        assert_eq!(found.tolerated(&search.nominal), 0);
     }
 }

@@ -26,12 +26,12 @@ impl Tried {
     /// Of the explanations; none where no fit with it came to an end.
     pub(in crate::diagnosis) fn of(
         effect: &'static Effect,
-        believed: &PlantParameters,
+        nominal: &PlantParameters,
         (ranked, evidence): (&[Ranked], &Evidence),
     ) -> Option<Self> {
         let place = (ranked.iter()).position(|r| has(&r.hypothesis, effect))?;
         let own = &ranked[place];
-        let all = estimates(believed, std::slice::from_ref(own), evidence).effects;
+        let all = estimates(nominal, std::slice::from_ref(own), evidence).effects;
         let numbers = all.into_iter().find(|(other, _)| other.name == effect.name);
         Some(Self {
             place,

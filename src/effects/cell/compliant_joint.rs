@@ -24,12 +24,12 @@ const RIGID: [f64; 2] = [1e3, 1e8];
 pub(super) const EFFECT: Effect = Effect {
     text: include_str!("compliant_joint.rs"),
     parameters: |p, joint| {
-        let believed = p.cell.joint_stiffness[joint];
+        let nominal = p.cell.joint_stiffness[joint];
         vec![reported(
             JOINT_STIFFNESS.named("stiffness_n_m_per_rad").of(joint),
             Logarithmic,
-            if believed.is_finite() {
-                [1e-4 * believed, 100.0 * believed]
+            if nominal.is_finite() {
+                [1e-4 * nominal, 100.0 * nominal]
             } else {
                 RIGID
             },
@@ -37,12 +37,12 @@ pub(super) const EFFECT: Effect = Effect {
     },
     usual: |p, joint| vec![(0.1 * p.cell.joint_stiffness[joint]).min(1.5e5)],
     starts: |clues, joint| {
-        let believed = clues.plant.cell.joint_stiffness[joint];
-        if believed.is_infinite() {
+        let nominal = clues.plant.cell.joint_stiffness[joint];
+        if nominal.is_infinite() {
             return vec![vec![1e7], vec![1e6], vec![1e5]];
         }
         let shares = [0.02, 0.1, 0.4].iter();
-        shares.map(|share| vec![share * believed]).collect()
+        shares.map(|share| vec![share * nominal]).collect()
     },
     ..effect("compliant_joint", Subsystem::Arm)
 };

@@ -27,10 +27,10 @@ fn rest(valve: ValvePosition) -> Measurement {
 
 fn settle(
     data: &DeviceParameters,
-    told: &EstimatorParameters,
+    given: &EstimatorParameters,
     sample: &Measurement,
 ) -> EstimatorOutput {
-    let mut estimator = ContactForceEstimator::new(data, told, sample.stroke, PERIOD).unwrap();
+    let mut estimator = ContactForceEstimator::new(data, given, sample.stroke, PERIOD).unwrap();
     let mut estimate = estimator.update(sample);
     for _ in 0..3000 {
         estimate = estimator.update(sample);
@@ -50,7 +50,7 @@ fn at_rest_the_force_is_pressure_times_area_less_the_weight() {
     let data = frictionless();
     let areas = data.areas();
     for gravity in [0.0, 9.81, -9.81] {
-        let told = EstimatorParameters {
+        let given = EstimatorParameters {
             gravity_along_axis: gravity,
             ..parameters(&data, Tolerances::NONE)
         };
@@ -58,7 +58,7 @@ fn at_rest_the_force_is_pressure_times_area_less_the_weight() {
             (ValvePosition::Extend, 1.8e5 * areas.extending),
             (ValvePosition::Retract, -1.8e5 * areas.retracting),
         ] {
-            let estimate = settle(&data, &told, &rest(valve));
+            let estimate = settle(&data, &given, &rest(valve));
             let expected = gas + data.moving_mass * gravity;
             let error = estimate.force - expected;
             assert!(error.abs() < 1e-4, "{valve:?} {gravity}: {error} N");
@@ -76,11 +76,11 @@ fn at_rest_without_noise_the_variance_is_the_sum_of_the_tolerances() {
         piston_area: 0.005,
         ..Tolerances::default()
     };
-    let told = EstimatorParameters {
+    let given = EstimatorParameters {
         gravity_along_axis: -9.81,
         ..EstimatorParameters::new(QUIET, tolerances)
     };
-    let estimate = settle(&data, &told, &rest(ValvePosition::Extend));
+    let estimate = settle(&data, &given, &rest(ValvePosition::Extend));
     let area = data.areas().extending;
     let expected = [
         area * tolerances.regulator_pressure_bias,
@@ -106,7 +106,7 @@ fn noise_of_the_acceleration_leaves_the_variance_of_a_scalar_walk() {
         acceleration: 0.25,
         regulator_pressure: 1e-3,
     };
-    let told = EstimatorParameters {
+    let given = EstimatorParameters {
         models: vec![ProcessModel {
             acceleration_walk: walk,
             pressure_walk: 1e-3,
@@ -114,7 +114,7 @@ fn noise_of_the_acceleration_leaves_the_variance_of_a_scalar_walk() {
         }],
         ..EstimatorParameters::new(noise, Tolerances::NONE)
     };
-    let mut estimator = ContactForceEstimator::new(&data, &told, 0.025, PERIOD).unwrap();
+    let mut estimator = ContactForceEstimator::new(&data, &given, 0.025, PERIOD).unwrap();
     let mut estimate = estimator.update(&rest(ValvePosition::Extend));
     for _ in 0..200 {
         estimate = estimator.update(&rest(ValvePosition::Extend));

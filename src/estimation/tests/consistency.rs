@@ -7,11 +7,11 @@ use crate::estimation::{ContactForceEstimator, EstimatorOutput, EstimatorParamet
 
 fn follow(
     data: &DeviceParameters,
-    told: &EstimatorParameters,
+    given: &EstimatorParameters,
     stroke: f64,
     samples: &[Sample],
 ) -> Vec<EstimatorOutput> {
-    let mut estimator = ContactForceEstimator::new(data, told, stroke, PERIOD).unwrap();
+    let mut estimator = ContactForceEstimator::new(data, given, stroke, PERIOD).unwrap();
     samples
         .iter()
         .map(|sample| estimator.update(&sample.measurement))
@@ -20,9 +20,9 @@ fn follow(
 
 fn exact(motion: &Motion) -> (Vec<Sample>, Vec<EstimatorOutput>) {
     let data = device();
-    let told = parameters(&data, Tolerances::NONE);
-    let samples = run(&data, &told, &Deviation::NONE, motion, 7);
-    let estimates = follow(&data, &told, samples[0].measurement.stroke, &samples);
+    let given = parameters(&data, Tolerances::NONE);
+    let samples = run(&data, &given, &Deviation::NONE, motion, 7);
+    let estimates = follow(&data, &given, samples[0].measurement.stroke, &samples);
     (samples, estimates)
 }
 
@@ -64,15 +64,15 @@ fn chamber_pressures_come_out_within_noise() {
 #[test]
 fn a_missing_sample_is_skipped_and_costs_certainty() {
     let data = device();
-    let told = parameters(&data, Tolerances::NONE);
-    let mut samples = run(&data, &told, &Deviation::NONE, &moved(290.0, 0.5), 7);
-    let whole = follow(&data, &told, 0.035, &samples);
+    let given = parameters(&data, Tolerances::NONE);
+    let mut samples = run(&data, &given, &Deviation::NONE, &moved(290.0, 0.5), 7);
+    let whole = follow(&data, &given, 0.035, &samples);
     for sample in &mut samples[1000..1100] {
         sample.measurement.stroke = f64::NAN;
         sample.measurement.acceleration = f64::INFINITY;
         sample.measurement.regulator_pressure = f64::NAN;
     }
-    let holed = follow(&data, &told, 0.035, &samples);
+    let holed = follow(&data, &given, 0.035, &samples);
     assert_eq!(whole[..1000], holed[..1000]);
     assert!(holed[1099].standard_deviation > 1.5 * whole[1099].standard_deviation);
     assert!(
@@ -90,7 +90,7 @@ fn a_missing_sample_is_skipped_and_costs_certainty() {
     let settled = holed[1400].standard_deviation / whole[1400].standard_deviation;
     assert!((settled - 1.0).abs() < 0.1, "{settled}");
     // From the very first sample on, too.
-    let mut estimator = ContactForceEstimator::new(&data, &told, 0.035, PERIOD).unwrap();
+    let mut estimator = ContactForceEstimator::new(&data, &given, 0.035, PERIOD).unwrap();
     let blind = estimator.update(&samples[1050].measurement);
     assert!(blind.force.is_finite() && blind.standard_deviation > 300.0);
 }
@@ -98,8 +98,8 @@ fn a_missing_sample_is_skipped_and_costs_certainty() {
 #[test]
 fn samples_far_off_leave_no_lasting_trace() {
     let data = device();
-    let told = parameters(&data, Tolerances::default());
-    let mut samples = run(&data, &told, &Deviation::NONE, &moved(290.0, 0.5), 7);
+    let given = parameters(&data, Tolerances::default());
+    let mut samples = run(&data, &given, &Deviation::NONE, &moved(290.0, 0.5), 7);
     let spikes = [
         (500, [0.1, 9e3, 1.1e6]),
         (700, [-0.05, -9e3, -1e5]),
@@ -111,7 +111,7 @@ fn samples_far_off_leave_no_lasting_trace() {
         samples[at + 50].measurement.acceleration = acceleration;
         samples[at + 100].measurement.regulator_pressure = pressure;
     }
-    let estimates = follow(&data, &told, 0.035, &samples);
+    let estimates = follow(&data, &given, 0.035, &samples);
     let finite = |e: &EstimatorOutput| e.force.is_finite() && e.standard_deviation.is_finite();
     assert_eq!(estimates.iter().position(|e| !finite(e)), None);
     for (sample, estimate) in samples.iter().zip(&estimates).skip(2000) {
@@ -168,12 +168,12 @@ fn running_out_and_striking_is_followed() {
 #[ignore = "prints a time"]
 fn estimation_cost() {
     let data = device();
-    let told = parameters(&data, Tolerances::default());
-    let samples = run(&data, &told, &Deviation::NONE, &moved(290.0, 0.5), 7);
+    let given = parameters(&data, Tolerances::default());
+    let samples = run(&data, &given, &Deviation::NONE, &moved(290.0, 0.5), 7);
     let start = std::time::Instant::now();
     let mut sum = 0.0;
     for _ in 0..10 {
-        sum += follow(&data, &told, 0.035, &samples)[2000].force;
+        sum += follow(&data, &given, 0.035, &samples)[2000].force;
     }
     let each = start.elapsed().as_secs_f64() / 10.0 / samples.len() as f64;
     println!("{:.2} us an update ({sum})", 1e6 * each);

@@ -100,8 +100,8 @@ impl Score {
 }
 
 /// Scores an estimator over a run, from the first moment of sliding on.
-fn score(samples: &[Sample], data: &DeviceParameters, told: &EstimatorParameters) -> Score {
-    let mut estimator = ContactForceEstimator::new(data, told, 0.035, PERIOD).unwrap();
+fn score(samples: &[Sample], data: &DeviceParameters, given: &EstimatorParameters) -> Score {
+    let mut estimator = ContactForceEstimator::new(data, given, 0.035, PERIOD).unwrap();
     let mut score = Score::default();
     let mut slid = false;
     for sample in samples {
@@ -118,7 +118,7 @@ fn score(samples: &[Sample], data: &DeviceParameters, told: &EstimatorParameters
 fn ensemble(
     data: &DeviceParameters,
     parameters: &EstimatorParameters,
-    told: &EstimatorParameters,
+    given: &EstimatorParameters,
     motion: &Motion,
     devices: Range<usize>,
 ) -> Score {
@@ -126,7 +126,7 @@ fn ensemble(
     for index in devices {
         let seed = FIRST_SEED + index as u64;
         let samples = run(data, parameters, &Deviation::halton(index), motion, seed);
-        sum.merge(&score(&samples, data, told));
+        sum.merge(&score(&samples, data, given));
     }
     sum
 }
@@ -211,12 +211,12 @@ fn classes() -> Vec<(&'static str, DeviceParameters, f64)> {
 #[test]
 fn on_the_moved_surface_the_error_is_below_2_percent_and_the_band_covers() {
     let data = device();
-    let told = parameters(&data, Tolerances::default());
+    let given = parameters(&data, Tolerances::default());
     for (frequency, devices) in [(0.1, 36), (0.5, 72)] {
         let score = ensemble(
             &data,
-            &told,
-            &told,
+            &given,
+            &given,
             &moved(290.0, frequency),
             1..devices + 1,
         );
@@ -231,9 +231,9 @@ fn on_the_moved_surface_the_error_is_below_2_percent_and_the_band_covers() {
 #[test]
 fn a_device_exactly_as_its_data_is_covered_by_a_band_several_times_narrower() {
     let data = device();
-    let told = parameters(&data, Tolerances::NONE);
+    let given = parameters(&data, Tolerances::NONE);
     for (frequency, runs) in [(0.1, 3), (0.5, 8)] {
-        let score = ensemble(&data, &told, &told, &moved(290.0, frequency), 1..runs + 1);
+        let score = ensemble(&data, &given, &given, &moved(290.0, frequency), 1..runs + 1);
         assert_covers(&score, "exact");
         assert_opens(&score, 3.0);
         assert!(score.sliding_deviation() < 0.5);
@@ -245,7 +245,7 @@ fn a_device_exactly_as_its_data_is_covered_by_a_band_several_times_narrower() {
 fn devices_of_all_classes_are_covered() {
     let mut pooled = Score::default();
     for (class, (name, data, gravity)) in classes().into_iter().enumerate() {
-        let told = EstimatorParameters {
+        let given = EstimatorParameters {
             gravity_along_axis: gravity,
             ..parameters(&data, Tolerances::default())
         };
@@ -255,7 +255,7 @@ fn devices_of_all_classes_are_covered() {
             ..moved(290.0, 0.5)
         };
         let first = 1 + 8 * class;
-        let score = ensemble(&data, &told, &told, &motion, first..first + 8);
+        let score = ensemble(&data, &given, &given, &motion, first..first + 8);
         // Eight draws of a class do not settle its coverage; those of all classes do.
         assert!(score.coverage() > 0.75, "{}", score.line(name, 290.0));
         pooled.merge(&score);
@@ -267,10 +267,10 @@ fn devices_of_all_classes_are_covered() {
 fn told_a_quarter_of_the_tolerances_the_band_fails_to_cover() {
     let data = device();
     let drawn = parameters(&data, Tolerances::default());
-    let mut told = drawn.clone();
-    told.tolerances.dry_friction /= 4.0;
-    told.tolerances.regulator_pressure_bias /= 4.0;
-    let score = ensemble(&data, &drawn, &told, &moved(290.0, 0.5), 1..37);
+    let mut given = drawn.clone();
+    given.tolerances.dry_friction /= 4.0;
+    given.tolerances.regulator_pressure_bias /= 4.0;
+    let score = ensemble(&data, &drawn, &given, &moved(290.0, 0.5), 1..37);
     assert!(score.coverage() < 0.6, "{}", score.line("", 290.0));
     assert!(score.normalized / score.all as f64 > 4.0);
 }
@@ -285,18 +285,18 @@ fn estimation_table() {
     ] {
         println!("{kind}");
         let data = device();
-        let told = parameters(&data, tolerances);
+        let given = parameters(&data, tolerances);
         for frequency in [0.05, 0.1, 0.25, 0.5, 1.0] {
-            let score = ensemble(&data, &told, &told, &moved(290.0, frequency), 1..73);
+            let score = ensemble(&data, &given, &given, &moved(290.0, frequency), 1..73);
             println!("{}", score.line(&format!("290 N, {frequency} Hz"), 290.0));
         }
         for force in [50.0, 100.0, 450.0] {
-            let score = ensemble(&data, &told, &told, &moved(force, 0.5), 1..73);
+            let score = ensemble(&data, &given, &given, &moved(force, 0.5), 1..73);
             println!("{}", score.line(&format!("{force} N, 0.5 Hz"), force));
         }
         let mut pooled = Score::default();
         for (name, data, gravity) in classes() {
-            let told = EstimatorParameters {
+            let given = EstimatorParameters {
                 gravity_along_axis: gravity,
                 ..parameters(&data, tolerances)
             };
@@ -305,7 +305,7 @@ fn estimation_table() {
                     gravity,
                     ..moved(290.0, frequency)
                 };
-                let score = ensemble(&data, &told, &told, &motion, 1..37);
+                let score = ensemble(&data, &given, &given, &motion, 1..37);
                 println!("{}", score.line(&format!("{name}, {frequency} Hz"), 290.0));
                 pooled.merge(&score);
             }

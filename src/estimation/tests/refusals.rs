@@ -8,9 +8,9 @@ use crate::physics::hose::Hose;
 
 fn refused(change: impl Fn(&mut EstimatorParameters), stroke: f64, period: f64) -> EstimationError {
     let data = device();
-    let mut told = parameters(&data, Tolerances::default());
-    change(&mut told);
-    ContactForceEstimator::new(&data, &told, stroke, period).unwrap_err()
+    let mut given = parameters(&data, Tolerances::default());
+    change(&mut given);
+    ContactForceEstimator::new(&data, &given, stroke, period).unwrap_err()
 }
 
 #[test]
@@ -36,7 +36,7 @@ fn each_refusal_names_what_is_wrong() {
 
 #[test]
 fn a_device_with_parts_beyond_the_equations_is_refused() {
-    let told = parameters(&device(), Tolerances::NONE);
+    let given = parameters(&device(), Tolerances::NONE);
     let mut warm = device();
     warm.gas_process = GasProcess::WallHeat { conductance: 1.0 };
     let mut piped = device();
@@ -60,7 +60,7 @@ fn a_device_with_parts_beyond_the_equations_is_refused() {
         (pressed, "presses"),
         (late, "switches late"),
     ] {
-        let message = ContactForceEstimator::new(&data, &told, 0.03, PERIOD)
+        let message = ContactForceEstimator::new(&data, &given, 0.03, PERIOD)
             .unwrap_err()
             .to_string();
         assert!(message.contains(part), "{message}");

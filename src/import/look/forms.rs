@@ -5,7 +5,7 @@ use std::path::Path;
 use super::seen::{Because, Cells, Line, Looked, SaidUnit, Seen, TimeSeen};
 use super::time::toml_text;
 use super::{names, text, units};
-use crate::import::encoding::Told;
+use crate::import::encoding::DetectedEncoding;
 use crate::import::error::ImportError;
 use crate::import::map::{Column, Pressure};
 use crate::import::units::named;
@@ -143,12 +143,12 @@ pub(super) fn tdms(path: &Path) -> Result<Looked, ImportError> {
 /// Looks at the sheet of a spreadsheet that holds the most numbers.
 pub(super) fn spreadsheet(path: &Path) -> Result<Looked, ImportError> {
     let sheet = spreadsheet::likely(path)?;
-    let told = Told {
+    let detected = DetectedEncoding {
         name: "utf-8".to_owned(),
         reason: "",
         is_certain: true,
     };
-    let mut looked = text::look_at(path, &sheet.text, &told)?;
+    let mut looked = text::look_at(path, &sheet.text, &detected)?;
     // Numbers have no marks there, unless they stand as texts.
     let is_plain = |line: &Line| line.key == "decimal_mark" && line.value == "\".\"";
     let of_files = ["encoding", "separator"];

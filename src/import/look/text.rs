@@ -8,7 +8,7 @@ use super::marks::marks;
 use super::seen::{Because, Cells, Line, Looked, SaidUnit, Seen, TimeSeen};
 use super::table::{self, Kind, NoTable, Table, kind};
 use super::{long, names, rate, units};
-use crate::import::encoding::Told;
+use crate::import::encoding::DetectedEncoding;
 use crate::import::error::ImportError;
 use crate::import::map::Column;
 use crate::import::numbers::{self, Marks};
@@ -25,12 +25,16 @@ type Numbered = (u64, Record);
 
 /// Looks at a text.
 pub(super) fn look(path: &Path) -> Result<Looked, ImportError> {
-    let (text, told) = content(path, None)?;
-    look_at(path, &text, &told)
+    let (text, detected) = content(path, None)?;
+    look_at(path, &text, &detected)
 }
 
 /// Looks at a text that was taken from a file.
-pub(super) fn look_at(path: &Path, text: &str, told: &Told) -> Result<Looked, ImportError> {
+pub(super) fn look_at(
+    path: &Path,
+    text: &str,
+    detected: &DetectedEncoding,
+) -> Result<Looked, ImportError> {
     let fail = |cause: &str| ImportError::Read {
         file: path.to_owned(),
         cause: cause.to_owned(),
@@ -59,7 +63,7 @@ pub(super) fn look_at(path: &Path, text: &str, told: &Told) -> Result<Looked, Im
         .map(|kind| *kind == Kind::Number)
         .collect();
     let (marks, because, question) = marks(path, &sheet, &of_numbers)?;
-    let mut head = head(told, &table, marks, because);
+    let mut head = head(detected, &table, marks, because);
     if let Some(line) = names_line {
         head.push(Line {
             key: "names_line",
@@ -96,18 +100,18 @@ pub(super) fn look_at(path: &Path, text: &str, told: &Told) -> Result<Looked, Im
 }
 
 /// The lines of a map on what divides fields, what stands in numbers and where rows begin.
-fn head(told: &Told, table: &Table, marks: Marks, because: Because) -> Vec<Line> {
+fn head(detected: &DetectedEncoding, table: &Table, marks: Marks, because: Because) -> Vec<Line> {
     let line = |key, value, because| Line {
         key,
         value,
         because,
     };
     let of_encoding = Because {
-        is_certain: told.is_certain,
-        why: told.reason.to_owned(),
+        is_certain: detected.is_certain,
+        why: detected.reason.to_owned(),
     };
     let mut head = vec![
-        line("encoding", format!("{:?}", told.name), of_encoding),
+        line("encoding", format!("{:?}", detected.name), of_encoding),
         line(
             "separator",
             format!("{:?}", table.name),

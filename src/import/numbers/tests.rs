@@ -52,7 +52,7 @@ fn numbers_are_read_with_the_marks_that_are_given_and_with_no_others() {
 
 #[test]
 fn a_field_tells_its_marks_unless_they_may_be_either() {
-    for (text, told) in [
+    for (text, expected) in [
         ("12", Seen::Plain),
         ("1.5", Seen::Decimal('.')),
         ("0,125", Seen::Decimal(',')),
@@ -69,7 +69,7 @@ fn a_field_tells_its_marks_unless_they_may_be_either() {
         ("1 234,5", Seen::Grouped(' ', Some(','))),
         ("1.5E", Seen::Other),
     ] {
-        assert_eq!(seen(text), told, "{text}");
+        assert_eq!(seen(text), expected, "{text}");
     }
 }
 

@@ -129,7 +129,7 @@ impl PartialEq for Expression {
 
 /// Statement of an expression on the unit of one of its parts.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Told {
+enum InferredUnit {
     /// A number as written: of any unit beside a sum, of none in a product.
     Number,
     /// Nothing is known.
@@ -186,7 +186,7 @@ impl Expression {
         expected: Unit,
     ) -> Result<(), ExpressionError> {
         match unit(&self.root, units)? {
-            Told::Unit(found) if found != expected => Err(ExpressionError {
+            InferredUnit::Unit(found) if found != expected => Err(ExpressionError {
                 span: self.root.span.clone(),
                 reason: format!("it is in {found}, expected {expected}"),
             }),
@@ -415,61 +415,65 @@ fn finite(node: &Node, values: &[f64]) -> Result<f64, ExpressionError> {
     })
 }
 
-fn unit(node: &Node, units: &[Option<Unit>]) -> Result<Told, ExpressionError> {
+fn unit(node: &Node, units: &[Option<Unit>]) -> Result<InferredUnit, ExpressionError> {
     let refuse = |reason: String| ExpressionError {
         span: node.span.clone(),
         reason,
     };
     Ok(match &node.kind {
-        Kind::Number(_) => Told::Number,
-        Kind::Name(_) => Told::Nothing,
-        Kind::Value(place) => units[*place].map_or(Told::Nothing, Told::Unit),
+        Kind::Number(_) => InferredUnit::Number,
+        Kind::Name(_) => InferredUnit::Nothing,
+        Kind::Value(place) => units[*place].map_or(InferredUnit::Nothing, InferredUnit::Unit),
         Kind::Negative(of) => unit(of, units)?,
         Kind::Function(function, of) => match unit(of, units)? {
-            Told::Unit(argument) => Told::Unit((function.unit)(argument).ok_or_else(|| {
-                refuse(format!(
-                    "{} of something in {argument}, expected a number without a unit",
-                    function.name
-                ))
-            })?),
-            told => told,
+            InferredUnit::Unit(argument) => {
+                InferredUnit::Unit((function.unit)(argument).ok_or_else(|| {
+                    refuse(format!(
+                        "{} of something in {argument}, expected a number without a unit",
+                        function.name
+                    ))
+                })?)
+            }
+            inferred => inferred,
         },
         Kind::Operation(operation, both) => {
             let [a, b] = &**both;
-            let told = [unit(a, units)?, unit(b, units)?];
-            match (operation, told) {
+            let inferred = [unit(a, units)?, unit(b, units)?];
+            match (operation, inferred) {
                 (Operation::Multiply | Operation::Divide, [a, b]) => product(*operation, a, b),
-                (Operation::Power, [Told::Unit(base), _]) => match b.kind {
-                    Kind::Number(exponent) => Told::Unit(base.power(exponent)),
-                    _ if base == Unit::ONE => Told::Unit(base),
-                    _ => Told::Nothing,
+                (Operation::Power, [InferredUnit::Unit(base), _]) => match b.kind {
+                    Kind::Number(exponent) => InferredUnit::Unit(base.power(exponent)),
+                    _ if base == Unit::ONE => InferredUnit::Unit(base),
+                    _ => InferredUnit::Nothing,
                 },
                 (Operation::Power, [base, _]) => base,
-                (_, [Told::Unit(a), Told::Unit(b)]) if a != b => {
+                (_, [InferredUnit::Unit(a), InferredUnit::Unit(b)]) if a != b => {
                     return Err(refuse(format!("{a} beside {b}")));
                 }
-                (Operation::Less | Operation::Greater, _) => Told::Unit(Unit::ONE),
-                (_, [Told::Unit(unit), _] | [_, Told::Unit(unit)]) => Told::Unit(unit),
-                (_, [Told::Number, Told::Number]) => Told::Number,
-                _ => Told::Nothing,
+                (Operation::Less | Operation::Greater, _) => InferredUnit::Unit(Unit::ONE),
+                (_, [InferredUnit::Unit(unit), _] | [_, InferredUnit::Unit(unit)]) => {
+                    InferredUnit::Unit(unit)
+                }
+                (_, [InferredUnit::Number, InferredUnit::Number]) => InferredUnit::Number,
+                _ => InferredUnit::Nothing,
             }
         }
     })
 }
 
-fn product(operation: Operation, a: Told, b: Told) -> Told {
-    let known = |told| match told {
-        Told::Number => Some(Unit::ONE),
-        Told::Nothing => None,
-        Told::Unit(unit) => Some(unit),
+fn product(operation: Operation, a: InferredUnit, b: InferredUnit) -> InferredUnit {
+    let known = |inferred| match inferred {
+        InferredUnit::Number => Some(Unit::ONE),
+        InferredUnit::Nothing => None,
+        InferredUnit::Unit(unit) => Some(unit),
     };
-    if (a, b) == (Told::Number, Told::Number) {
-        return Told::Number;
+    if (a, b) == (InferredUnit::Number, InferredUnit::Number) {
+        return InferredUnit::Number;
     }
     let (Some(a), Some(b)) = (known(a), known(b)) else {
-        return Told::Nothing;
+        return InferredUnit::Nothing;
     };
-    Told::Unit(match operation {
+    InferredUnit::Unit(match operation {
         Operation::Divide => a.times(b.power(-1.0)),
         _ => a.times(b),
     })

@@ -53,9 +53,9 @@ pub(super) fn law(
         let part = expression.get(error.span.clone()).unwrap_or_default();
         let part = if part.is_empty() { "its end" } else { part };
         ScenarioError::Expression {
-            place: section
+            location: section
                 .document()
-                .place_in_text(&section.dotted(IS), &error.span),
+                .location_in_text(&section.dotted(IS), &error.span),
             key: section.dotted(IS),
             reason: format!("at `{part}`: {}", error.reason),
         }
@@ -66,8 +66,8 @@ pub(super) fn law(
         expression: Expression::read(expression, &names).map_err(at)?,
         constants,
     };
-    for (place, constant) in law.constants.iter().enumerate() {
-        if !law.is_bristle_stiffness(constant) && !law.expression.uses(SYMBOLS.len() + place) {
+    for (index, constant) in law.constants.iter().enumerate() {
+        if !law.is_bristle_stiffness(constant) && !law.expression.uses(SYMBOLS.len() + index) {
             let reason = format!("the expression has no `{}`", constant.name);
             return Err(section.misplaced(constant.name, reason));
         }

@@ -32,12 +32,12 @@ pub enum LineError {
         found: String,
     },
     /// An expression that is none.
-    #[error("at `{part}`, character {place} of the expression: {reason}")]
+    #[error("at `{part}`, character {location} of the expression: {reason}")]
     Expression {
         /// The part.
         part: String,
         /// Its first character, from 1.
-        place: usize,
+        location: usize,
         /// In words.
         reason: String,
     },
@@ -112,8 +112,8 @@ pub fn law_of_line(line: &str) -> Result<LawText, LineError> {
         expression: Expression::read(text, &names).map_err(at)?,
         constants,
     };
-    for (place, constant) in law.constants.iter().enumerate() {
-        if !law.is_bristle_stiffness(constant) && !law.expression.uses(SYMBOLS.len() + place) {
+    for (location, constant) in law.constants.iter().enumerate() {
+        if !law.is_bristle_stiffness(constant) && !law.expression.uses(SYMBOLS.len() + location) {
             let name = constant.name.to_owned();
             return Err(LineError::Unused { name });
         }
@@ -134,7 +134,7 @@ fn in_expression(text: &str, span: &Range<usize>, reason: String) -> LineError {
     let part = text.get(span.clone()).unwrap_or_default();
     LineError::Expression {
         part: if part.is_empty() { "its end" } else { part }.to_owned(),
-        place: text.get(..span.start).unwrap_or(text).chars().count() + 1,
+        location: text.get(..span.start).unwrap_or(text).chars().count() + 1,
         reason,
     }
 }

@@ -140,7 +140,7 @@ impl Reader<'_> {
             Some(key) => {
                 let dotted = join(TABLE, key);
                 Err(ScenarioError::UnknownKey {
-                    place: self.document.key_place(&dotted),
+                    location: self.document.key_location(&dotted),
                     key: dotted,
                     advice: nearest(key, &known),
                 })

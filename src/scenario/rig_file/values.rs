@@ -109,7 +109,7 @@ fn refuse_unknown(
         Some(key) => {
             let key = join(table, key);
             Err(ScenarioError::UnknownKey {
-                place: document.key_place(&key),
+                location: document.key_location(&key),
                 advice: advice(&key, &sections),
                 key,
             })

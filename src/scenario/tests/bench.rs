@@ -14,8 +14,8 @@ fn bench(from: &str, to: &str) -> BenchScenario {
 
 /// Refuses each `to` in place of `from` in the minimal bench, at its place with its words.
 fn refused(cases: &[(&str, &str, &str, &str)]) {
-    for (from, to, place, words) in cases {
-        text_refused(&replaced(MINIMAL_BENCH, from, to), place, words);
+    for (from, to, location, words) in cases {
+        text_refused(&replaced(MINIMAL_BENCH, from, to), location, words);
     }
 }
 
@@ -168,7 +168,7 @@ fn a_load_has_the_keys_of_its_kind_and_no_others() {
 fn commands_and_positions_follow_one_another_within_the_run() {
     let two =
         |first: &str, second: &str| format!("{FREE}[[command]]\n{first}\n[[command]]\n{second}\n");
-    for (keys, place, words) in [
+    for (keys, location, words) in [
         (
             two("at_s = 2\nforce_n = 1", "at_s = 2\nforce_n = 2"),
             "14:1",
@@ -226,7 +226,7 @@ fn commands_and_positions_follow_one_another_within_the_run() {
             "`valve[0].at_s` is 7 s, expected 0 to 6 s",
         ),
     ] {
-        refused(&[(FREE, &keys, place, words)]);
+        refused(&[(FREE, &keys, location, words)]);
     }
 }
 

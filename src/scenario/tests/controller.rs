@@ -74,7 +74,7 @@ fn the_period_is_that_of_the_sensors_in_whole_steps() {
 #[test]
 fn misuse_is_refused_by_place_and_key() {
     // The lines begin after the 13 of the bench.
-    for (lines, place, words) in [
+    for (lines, location, words) in [
         (
             "[controller]\nkind = 'bang_bang'",
             "15:8",
@@ -116,7 +116,7 @@ fn misuse_is_refused_by_place_and_key() {
             "unknown key `controller.integral_gain`; the key is `integral_gain_per_s`, in 1/s",
         ),
     ] {
-        text_refused(&pressing(lines), place, words);
+        text_refused(&pressing(lines), location, words);
     }
 }
 

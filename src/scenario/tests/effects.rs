@@ -157,8 +157,8 @@ fn what_cannot_be_is_refused_with_its_place() {
     ] {
         let error = read(&text).unwrap_err();
         assert!(error.contains(said), "{text}{error}");
-        let place = format!("rig.toml:{}:", line + row);
-        assert!(error.starts_with(&place), "{place} {error}");
+        let location = format!("rig.toml:{}:", line + row);
+        assert!(error.starts_with(&location), "{location} {error}");
     }
     let error = read(&own("max(v", "mox(v")).unwrap_err();
     let column = "is = \"-c * ".len() + 1;

@@ -32,9 +32,9 @@ fn noise_left_out_is_that_of_the_sensing_table() {
     // A step of 0.1 mm is even noise of 0.1 / sqrt(12) mm.
     let stepped = "[sensing.stroke]\nkind = 'real'\nresolution_mm = 0.1\nstandard_deviation_mm = 0\n[estimator]\n";
     let same = (0.1e-3f64 * 0.1e-3 / 12.0).sqrt() * 1e3;
-    let told = set_up(&format!("[estimator]\nstroke_noise_mm = {same:e}\n"));
+    let given = set_up(&format!("[estimator]\nstroke_noise_mm = {same:e}\n"));
     let noise = |text: &str| text.split("noise: [").nth(1).unwrap()[..8].to_owned();
-    assert_eq!(noise(&set_up(stepped)), noise(&told));
+    assert_eq!(noise(&set_up(stepped)), noise(&given));
 }
 
 #[test]

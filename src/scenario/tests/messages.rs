@@ -78,7 +78,7 @@ fn another_schema_is_refused_before_its_unknown_keys() {
 
 #[test]
 fn an_unknown_key_leads_to_the_right_one() {
-    for (from, to, place, words) in [
+    for (from, to, location, words) in [
         (
             "force_n",
             "force",
@@ -140,13 +140,13 @@ fn an_unknown_key_leads_to_the_right_one() {
             "unknown key `expect.force_mean_n.mix`; known here are min, max",
         ),
     ] {
-        refused(from, to, place, words);
+        refused(from, to, location, words);
     }
 }
 
 #[test]
 fn a_missing_key_is_named_with_its_table_and_unit() {
-    for (from, place, words) in [
+    for (from, location, words) in [
         (
             "force_n = 150",
             "14:1",
@@ -173,7 +173,11 @@ fn a_missing_key_is_named_with_its_table_and_unit() {
             "`arm.urdf` is missing, expected it to be given, it has no default",
         ),
     ] {
-        let place = if from == "edge = 1" { "12:12" } else { place };
-        refused(from, "", place, words);
+        let location = if from == "edge = 1" {
+            "12:12"
+        } else {
+            location
+        };
+        refused(from, "", location, words);
     }
 }

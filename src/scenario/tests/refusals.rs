@@ -4,7 +4,7 @@ use super::{MINIMAL, edited, message, refused, scenarios};
 
 #[test]
 fn a_wrong_type_says_what_was_expected() {
-    for (from, to, place, words) in [
+    for (from, to, location, words) in [
         (
             "150",
             "\"150\"",
@@ -78,13 +78,13 @@ fn a_wrong_type_says_what_was_expected() {
             "`workpiece.edge.reversed` is 1, expected true or false",
         ),
     ] {
-        refused(from, to, place, words);
+        refused(from, to, location, words);
     }
 }
 
 #[test]
 fn a_number_out_of_range_is_refused_with_its_unit() {
-    for (from, to, place, words) in [
+    for (from, to, location, words) in [
         (
             "150",
             "-5",
@@ -146,7 +146,7 @@ fn a_number_out_of_range_is_refused_with_its_unit() {
             "`title` is \" \", expected a text",
         ),
     ] {
-        refused(from, to, place, words);
+        refused(from, to, location, words);
     }
 }
 
@@ -171,7 +171,7 @@ fn a_path_that_does_not_exist_is_named_as_written_and_in_full() {
 
 #[test]
 fn values_at_odds_with_each_other_are_refused() {
-    for (from, to, place, words) in [
+    for (from, to, location, words) in [
         (
             "150",
             "150\ncorner_feed_mm_per_s = 30",
@@ -239,13 +239,13 @@ fn values_at_odds_with_each_other_are_refused() {
             "`expect.x_n` is { min = 2, max = 1 }, expected min, max or both, finite and min not above max",
         ),
     ] {
-        refused(from, to, place, words);
+        refused(from, to, location, words);
     }
 }
 
 #[test]
 fn a_burr_has_the_keys_of_its_kind_and_no_others() {
-    for (keys, place, words) in [
+    for (keys, location, words) in [
         (
             "kind = \"wavy\"",
             "15:8",
@@ -275,7 +275,7 @@ fn a_burr_has_the_keys_of_its_kind_and_no_others() {
         refused(
             "[process]",
             &format!("[workpiece.burr]\n{keys}\n[process]"),
-            place,
+            location,
             words,
         );
     }

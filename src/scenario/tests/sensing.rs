@@ -20,8 +20,8 @@ fn sensing(keys: &str) -> SensingParameters {
 }
 
 /// Refuses tables below the nine lines of the minimal bench.
-fn refused(keys: &str, place: &str, words: &str) {
-    text_refused(&format!("{MINIMAL_BENCH}{keys}\n"), place, words);
+fn refused(keys: &str, location: &str, words: &str) {
+    text_refused(&format!("{MINIMAL_BENCH}{keys}\n"), location, words);
 }
 
 #[test]
@@ -195,7 +195,7 @@ fn every_kind_of_filter_is_read() {
 
 #[test]
 fn a_key_without_meaning_for_its_kind_is_refused() {
-    for (keys, place, words) in [
+    for (keys, location, words) in [
         (
             "[sensing.force]\ncapacity_kg = 20",
             "11:1",
@@ -237,13 +237,13 @@ fn a_key_without_meaning_for_its_kind_is_refused() {
             "`sensing.filter.cutoff_hz` cannot stand here: kind = \"none\" has no other key",
         ),
     ] {
-        refused(keys, place, words);
+        refused(keys, location, words);
     }
 }
 
 #[test]
 fn what_is_no_choice_or_no_key_is_refused() {
-    for (keys, place, words) in [
+    for (keys, location, words) in [
         (
             "[sensing]\npreset = \"real\"",
             "11:10",
@@ -300,14 +300,14 @@ fn what_is_no_choice_or_no_key_is_refused() {
             "`sensing.adc.bits` is 10.5, expected a whole number, 0 or more",
         ),
     ] {
-        refused(keys, place, words);
+        refused(keys, location, words);
     }
 }
 
 #[test]
 fn values_at_odds_with_each_other_are_refused() {
     let real = |stage: &str, keys: &str| format!("[sensing.{stage}]\nkind = \"real\"\n{keys}");
-    for (keys, place, words) in [
+    for (keys, location, words) in [
         (
             real("regulator_pressure", "full_v = 1.25"),
             "12:1",
@@ -381,7 +381,7 @@ fn values_at_odds_with_each_other_are_refused() {
             "`simulation.step_ms` is 12 ms, expected at most 10 ms, the sample period of [sensing]",
         ),
     ] {
-        refused(&keys, place, words);
+        refused(&keys, location, words);
     }
     for fits in ["sample_rate_hz = 1000", "sample_rate_hz = 0.1"] {
         let period = 1.0 / sensing(&format!("[sensing]\n{fits}")).sample_rate;

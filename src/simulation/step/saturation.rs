@@ -100,9 +100,9 @@ mod tests {
         saturation.settle(0.0, 1.0);
         saturation.note(&joint(), 1.1, Phase::Follow);
         saturation.settle(5e-3, 1.2);
-        let told = saturation.before(stop()).to_string();
+        let message = saturation.before(stop()).to_string();
         let expected = "the drive of joint elbow came to its limit of 50 N m at 1.000 s in phase engage and lost its path; after that ";
-        assert_eq!(told, format!("{expected}{}", stop()));
+        assert_eq!(message, format!("{expected}{}", stop()));
         saturation.settle(5e-4, 1.3);
         assert_eq!(saturation.before(stop()), stop());
     }

@@ -72,7 +72,7 @@ fn write_lines(
     // Lines that lie on one another are seen all the same: each is narrower than the one below it.
     let width = |role| match role {
         BoardRole::Measured => 4.0,
-        BoardRole::Believed => 2.2,
+        BoardRole::Nominal => 2.2,
         BoardRole::Improved | BoardRole::Guide => 1.4,
     };
     let look = SeriesLines::new()

@@ -36,7 +36,7 @@ fn board() -> Board {
             vertical: "lacking [N]".to_owned(),
             groups: vec![CloudGroup {
                 label: "as believed".to_owned(),
-                role: BoardRole::Believed,
+                role: BoardRole::Nominal,
                 points: vec![[0.0, 1.0], [2.0, -1.0]],
                 joined: false,
             }],

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::diagnosis::answer::Answer;
-use crate::diagnosis::answer::words::{capital, of_column, percent, yardstick};
+use crate::diagnosis::answer::words::{capital, of_column, percent, reference_noise};
 use crate::quantity::significant;
 
 /// Verdict, numbers, prediction, and the account.
@@ -48,7 +48,7 @@ fn effects(answer: &Answer) -> String {
         // A string takes whatever is written to it.
         let _ = writeln!(rows, "| **{name}** | probability | {probability} |");
         for (name, estimate) in &effect.parameters {
-            let (words, unit, factor) = effect.spoken(name);
+            let (words, unit, factor) = effect.display_name(name);
             let number = |value: f64| significant(factor * value, 4);
             let [low, value, high] = [estimate.low, estimate.value, estimate.high];
             // Which of several it is, such as a joint, has no interval.
@@ -87,6 +87,6 @@ fn predictions(answer: &Answer) -> String {
     }
     format!(
         "\n| prediction error (RMS) | of | before | after | {} |\n|---|---|---|---|---|\n{rows}",
-        yardstick(answer.details.remaining.is_some())
+        reference_noise(answer.details.remaining.is_some())
     )
 }

@@ -56,8 +56,8 @@ fn the_limit_that_is_told_is_stable_and_little_more_is_not() {
         message.contains("`controller.proportional_gain` is 50, its default, with which the loop is unstable: at "),
         "{message}"
     );
-    let told = limits(&message);
-    let [gain, integral] = told[..] else {
+    let stated = limits(&message);
+    let [gain, integral] = stated[..] else {
         panic!("{message}")
     };
     // In proportion, but for the rounding.
@@ -105,9 +105,9 @@ fn an_integral_alone_is_blamed_alone() {
 fn the_rc_and_the_filter_take_from_the_gains() {
     let plain = device(10.0);
     let (ideal, paper) = (SensingParameters::ideal(), SensingParameters::paper());
-    assert_eq!(believed(&plain, &ideal), plain);
+    assert_eq!(sensed_device(&plain, &ideal), plain);
     // 10 kohm and 10 uF: half of 0.1 s to either.
-    let regulator = believed(&plain, &paper).regulator;
+    let regulator = sensed_device(&plain, &paper).regulator;
     assert!((regulator.time_constant - 0.2).abs() < 1e-12);
     assert!((regulator.dead_time - 0.07).abs() < 1e-12);
     let gain = |device: &DeviceParameters| {
@@ -120,7 +120,7 @@ fn the_rc_and_the_filter_take_from_the_gains() {
             other => panic!("{other:?}"),
         }
     };
-    let behind_rc = believed(&plain, &paper);
+    let behind_rc = sensed_device(&plain, &paper);
     assert!(gain(&behind_rc) < 0.6 * gain(&plain));
     assert!(gain(&delayed(&behind_rc, 0.03)) < 0.8 * gain(&behind_rc));
 }

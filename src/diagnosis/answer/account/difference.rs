@@ -53,7 +53,7 @@ impl Diagnosis {
                 CHANNEL_WORDS[worst.channel as usize],
                 self.name(worst.recording),
                 significant(worst.sigmas, 3),
-                self.yardstick()
+                self.reference_noise()
             )];
         }
         let all = self.by_misfit(&self.baseline.prediction.residuals);
@@ -110,7 +110,7 @@ impl Diagnosis {
             self.name(worst.recording),
             CHANNEL_WORDS[worst.channel as usize],
             self.baseline_rms(worst, [from, to]),
-            self.yardstick(),
+            self.reference_noise(),
             in_unit(worst.channel, self.evidence.noise[worst.channel as usize]),
         )
     }

@@ -6,7 +6,7 @@ use super::super::finding::Diagnosis;
 use super::super::statements::{TRUSTED, in_headline};
 use super::super::words::{capital, listed};
 use super::missing::probability;
-use crate::diagnosis::fit::hypothesis::spoken_name;
+use crate::diagnosis::fit::hypothesis::effect_display_name;
 use crate::effects::{Effect, UNLISTED};
 
 /// Odds from which one law of a family is told from another (Kass and Raftery, Journal of the American Statistical Association 90, 1995) [1].
@@ -18,7 +18,7 @@ impl Diagnosis {
         let families = self.families();
         let mut names: Vec<String> = Vec::new();
         for effect in &self.best().effects {
-            let name = spoken_name(effect.name);
+            let name = effect_display_name(effect.name);
             let confidence = self.confidence(effect.name);
             let family = families
                 .iter()

@@ -8,7 +8,7 @@ use crate::diagnosis::difference::regime::Regime;
 use crate::quantity::significant;
 
 /// Share of a mismatch's variance from which a variable is worth a word [1].
-pub(super) const TELLING: f64 = 0.1;
+pub(super) const EXPLAINING: f64 = 0.1;
 
 impl Diagnosis {
     pub(super) fn which_link(&self) -> Vec<String> {
@@ -40,7 +40,7 @@ fn link_words(link: &LinkResidual, regimes: &[Regime]) -> String {
     }
     let telling: Vec<String> = regimes
         .iter()
-        .filter(|r| r.correlation_ratio >= TELLING)
+        .filter(|r| r.correlation_ratio >= EXPLAINING)
         .take(3)
         .map(|r| {
             format!(

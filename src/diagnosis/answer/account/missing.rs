@@ -4,14 +4,14 @@ use super::super::details::{DetectableReport, IN_TURN, PredictionError, Remainin
 use super::super::estimate::Limit;
 use super::super::finding::Diagnosis;
 use super::super::words::{
-    CHANNEL_UNITS, CHANNEL_WORDS, capital, in_unit, listed, percent, spoken, with_interval,
-    yardstick,
+    CHANNEL_UNITS, CHANNEL_WORDS, capital, display_name, in_unit, listed, percent, reference_noise,
+    with_interval,
 };
 use super::MOST_OTHERS;
-use super::link::TELLING;
+use super::link::EXPLAINING;
 use crate::diagnosis::answer::{Extent, FoundLaw};
 use crate::diagnosis::difference::links::Link;
-use crate::diagnosis::fit::hypothesis::spoken_name;
+use crate::diagnosis::fit::hypothesis::effect_display_name;
 use crate::diagnosis::recordings::recorded::COLUMNS;
 use crate::diagnosis::search::ruled_out::RuledOut;
 use crate::effects::meaning;
@@ -35,7 +35,7 @@ impl Diagnosis {
                             constant.unit.unwrap_or_default(),
                             1.0,
                         ),
-                        None => spoken(n.name),
+                        None => display_name(n.name),
                     };
                     let interval = n.interval.map(|end| end * factor);
                     let value = with_interval(n.value * factor, interval, unit);
@@ -53,7 +53,7 @@ impl Diagnosis {
             let doubt = self.doubt_words(effect.name);
             paragraphs.push(format!(
                 "{} ({subsystem}): {}. {}. Probability {}; the intervals are those of 95 %.{doubt}",
-                spoken_name(effect.name),
+                effect_display_name(effect.name),
                 law.map_or_else(
                     || meaning(effect.name).to_owned(),
                     |law| FoundLaw::of(law).words()
@@ -121,8 +121,8 @@ impl Diagnosis {
     fn most_left(&self) -> String {
         let errors = self.remaining_errors();
         match errors.first() {
-            Some(error) if error.is_beyond_noise() => error.words(self.yardstick()),
-            _ => format!("no more than {}", self.yardstick()),
+            Some(error) if error.is_beyond_noise() => error.words(self.reference_noise()),
+            _ => format!("no more than {}", self.reference_noise()),
         }
     }
 
@@ -133,7 +133,7 @@ impl Diagnosis {
         tolerated
             .filter(|free| !kept(free.quantity.name))
             .map(|free| {
-                let (_, unit, factor) = spoken(free.quantity.name);
+                let (_, unit, factor) = display_name(free.quantity.name);
                 let value = significant(free.start * factor, 4);
                 format!("{} = {value} {unit}", free.quantity.name)
                     .trim_end()
@@ -170,14 +170,14 @@ impl Diagnosis {
             said(worst.before),
             said(worst.after),
             CHANNEL_WORDS[index.unwrap_or(0)],
-            self.yardstick(),
+            self.reference_noise(),
             said(worst.noise.unwrap_or_default())
         )
     }
 
     /// Scale of departures.
-    pub(super) fn yardstick(&self) -> &'static str {
-        yardstick(self.remaining.is_some())
+    pub(super) fn reference_noise(&self) -> &'static str {
+        reference_noise(self.remaining.is_some())
     }
 
     /// Remainder that no law explains of a part of the device.
@@ -186,7 +186,7 @@ impl Diagnosis {
         let (unit, factor) = CHANNEL_UNITS[remaining.channel as usize];
         let said = |value: f64| format!("{} {unit}", significant(value * factor, 2));
         let telling: Vec<String> = (self.regimes_of_what_is_left().iter())
-            .filter(|regime| regime.correlation_ratio >= TELLING)
+            .filter(|regime| regime.correlation_ratio >= EXPLAINING)
             .take(MOST_OTHERS)
             .map(|regime| {
                 let name = regime.variable.trim_end_matches("_m").replace('_', " ");
@@ -215,11 +215,11 @@ impl Diagnosis {
         let Some(largest) = errors.first() else {
             return self.unexplained().into_iter().collect();
         };
-        let yardstick = self.yardstick();
+        let reference_noise = self.reference_noise();
         let beyond: Vec<String> = (errors.iter())
             .filter(|error| error.is_beyond_noise())
             .take(MOST_OTHERS)
-            .map(|error| error.words(yardstick))
+            .map(|error| error.words(reference_noise))
             .collect();
         let kept = errors.iter().any(|error| error.kept_back);
         let besides = if kept {
@@ -229,8 +229,8 @@ impl Diagnosis {
         };
         let rest = if beyond.is_empty() {
             format!(
-                "No more than {yardstick} in the recordings fitted to{besides}: the largest error beside it is {}.",
-                largest.words(yardstick)
+                "No more than {reference_noise} in the recordings fitted to{besides}: the largest error beside it is {}.",
+                largest.words(reference_noise)
             )
         } else {
             let count = errors.iter().filter(|e| e.is_beyond_noise()).count();
@@ -239,7 +239,7 @@ impl Diagnosis {
                 others => format!(", and in {others} more"),
             };
             format!(
-                "More than {yardstick} in {count} of {} channels of the recordings fitted to{besides}: {}{others}.",
+                "More than {reference_noise} in {count} of {} channels of the recordings fitted to{besides}: {}{others}.",
                 errors.len(),
                 listed(&beyond)
             )
@@ -273,7 +273,7 @@ impl Diagnosis {
 
     /// Variants of the explanation of a part of the device, with what they leave.
     pub(super) fn what_was_ruled_out(&self) -> String {
-        let Some(channel) = self.believed.parts.output() else {
+        let Some(channel) = self.nominal.parts.output() else {
             return String::new();
         };
         let (unit, factor) = CHANNEL_UNITS[channel as usize];
@@ -283,7 +283,11 @@ impl Diagnosis {
         }
         let words = |variants: &[&RuledOut]| -> String {
             let one = |variant: &&RuledOut| {
-                let names: Vec<String> = variant.effects.iter().map(|n| spoken_name(n)).collect();
+                let names: Vec<String> = variant
+                    .effects
+                    .iter()
+                    .map(|n| effect_display_name(n))
+                    .collect();
                 let names = match names.is_empty() {
                     true => "nothing".to_owned(),
                     false => listed(&names),
@@ -318,13 +322,13 @@ impl Diagnosis {
             .tolerated
             .iter()
             .filter_map(|n| {
-                let believed = self.tolerated.iter().find(|f| f.quantity.name == n.name)?;
-                let (words, unit, factor) = spoken(n.name);
+                let nominal = self.tolerated.iter().find(|f| f.quantity.name == n.name)?;
+                let (words, unit, factor) = display_name(n.name);
                 let table = n.name.split_once('.').map_or("", |(table, _)| table);
-                let moved = if believed.start == 0.0 {
+                let moved = if nominal.start == 0.0 {
                     String::new()
                 } else {
-                    format!(" ({})", change(100.0 * (n.value / believed.start - 1.0)))
+                    format!(" ({})", change(100.0 * (n.value / nominal.start - 1.0)))
                 };
                 let value = significant(n.value * factor, 4);
                 let limit = n.at_limit.map_or_else(String::new, |limit| {
@@ -353,14 +357,14 @@ impl Diagnosis {
 
 impl RemainingError {
     /// The error in words: `0.51 N RMS in the force of ride.csv (robust, 3.4 times the sensor's noise)`.
-    fn words(&self, yardstick: &str) -> String {
+    fn words(&self, reference_noise: &str) -> String {
         let channel = CHANNELS[self.channel];
         let kept = match self.kept_back {
             true => ", which was kept back",
             false => "",
         };
         format!(
-            "{} RMS in the {} of {}{kept} (robust, {} times {yardstick})",
+            "{} RMS in the {} of {}{kept} (robust, {} times {reference_noise})",
             in_unit(channel, self.rms),
             CHANNEL_WORDS[self.channel],
             self.recording,

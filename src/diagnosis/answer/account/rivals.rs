@@ -50,8 +50,8 @@ impl Diagnosis {
 
     /// An explanation beside the best one.
     fn instead(&self, rival: &Ranked) -> String {
-        let names = rival.hypothesis.spoken_names();
-        let best = self.best().spoken_names();
+        let names = rival.hypothesis.effect_display_names();
+        let best = self.best().effect_display_names();
         let beyond = |all: &[String], known: &[String]| -> Vec<String> {
             all.iter().filter(|n| !known.contains(n)).cloned().collect()
         };

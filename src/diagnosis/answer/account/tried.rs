@@ -26,7 +26,7 @@ impl Diagnosis {
         Some(TriedReport {
             formula: format!("{} = {}", law.port.name(), law.expression.text()),
             parameters: tried.numbers.iter().map(number).collect::<BTreeMap<_, _>>(),
-            effects: ranked.hypothesis.spoken_names(),
+            effects: ranked.hypothesis.effect_display_names(),
             is_answer: tried.place == 0,
             log10_odds: -0.5 * (ranked.score - self.ranked[0].score) / std::f64::consts::LN_10,
             explained_share: self.share_explained_by(&ranked.hypothesis),

@@ -34,7 +34,7 @@ const WHOLE: f64 = f64::INFINITY;
 /// Residual of the logarithm of the logged peak [1].
 const PEAK: f64 = 0.025;
 /// Time after contact in which each reading differs from that before, so that the reader is told [s].
-const TOLD: f64 = 0.35;
+const READER_TIME: f64 = 0.35;
 
 /// A mean over a time that is to be met.
 #[derive(Debug, Clone)]
@@ -73,7 +73,7 @@ impl Targets {
         let period = (run.time[run.time.len() - 1] - run.time[0]) / (run.time.len() - 1) as f64;
         let contact = shown.contact;
         let at = |time: f64| run.time.partition_point(|t| *t < contact + time);
-        let reader = Reader::of(&run.force[at(0.0)..at(TOLD)], period);
+        let reader = Reader::of(&run.force[at(0.0)..at(READER_TIME)], period);
         let readings = reader.readings(&run.force);
         let course = RunCourse::of(run, shown, LEAD);
         let (from, to) = (at(-0.004), at(IMPACT.0));

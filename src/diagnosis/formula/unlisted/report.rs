@@ -118,7 +118,7 @@ impl Diagnosis {
         near.into_iter()
             .take(MOST_NEAR)
             .map(|r| NearEffects {
-                effects: r.hypothesis.spoken_names(),
+                effects: r.hypothesis.effect_display_names(),
                 share_explained: self.share_explained_by(&r.hypothesis),
                 behind: r.score - self.ranked[0].score,
             })

@@ -15,7 +15,7 @@ fn parts(key: &str) -> (&str, &'static str) {
 
 /// A key in words and its unit, raised as pictures and pages have it: `supply orifice` and `mm²`.
 #[must_use]
-pub fn spoken(key: &str) -> (String, String) {
+pub fn display_name(key: &str) -> (String, String) {
     let (stem, unit) = parts(key);
     (stem.replace(['_', '.'], " "), raised(unit))
 }
@@ -28,7 +28,7 @@ pub fn symbol(key: &str) -> &'static str {
 
 /// `impact peak [N]` for `impact_peak_n`.
 pub fn axis(key: &str) -> String {
-    let (name, unit) = spoken(key);
+    let (name, unit) = display_name(key);
     if unit.is_empty() {
         name
     } else {

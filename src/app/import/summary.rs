@@ -105,10 +105,13 @@ pub(super) fn rate(time: &[f64]) -> f64 {
 /// The longest gaps of each log, which its channels share.
 fn gaps(found: &[Finding]) -> String {
     let mut text = String::new();
-    let mut told: Vec<[f64; 2]> = Vec::new();
+    let mut reported: Vec<[f64; 2]> = Vec::new();
     for finding in found {
         let longest = finding.gaps.iter().take(LISTED);
-        let fresh: Vec<[f64; 2]> = longest.filter(|gap| !told.contains(gap)).copied().collect();
+        let fresh: Vec<[f64; 2]> = longest
+            .filter(|gap| !reported.contains(gap))
+            .copied()
+            .collect();
         for [from, to] in fresh {
             let _ = writeln!(
                 text,
@@ -120,7 +123,7 @@ fn gaps(found: &[Finding]) -> String {
                     count => format!(", one of {count}"),
                 }
             );
-            told.push([from, to]);
+            reported.push([from, to]);
         }
     }
     text
