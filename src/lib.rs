@@ -4,6 +4,7 @@
 //!
 //! - [`listed`]: enums whose variants are listed and named
 //! - [`unit`]: units, each declared once
+//! - [`stats`]: median, quantiles, distributions: one rule for each
 //! - [`quantity`]: numbers with their units as people read them
 //! - [`physics`]: the pneumatic equations, one effect a file
 //! - [`device`]: the device made of them

@@ -3,27 +3,12 @@
 use std::process::Command;
 
 use crate::common::{project, skipped};
+use crate::documents::commands;
 use crate::help::{place, shell};
-
-/// Commands of the page, in order.
-fn commands() -> Vec<String> {
-    let page = std::fs::read_to_string(project("docs/FIRST-DIAGNOSIS.md")).unwrap();
-    let mut commands = Vec::new();
-    let mut inside = false;
-    for line in page.lines() {
-        match line {
-            "```sh" => inside = true,
-            "```" => inside = false,
-            line if inside => commands.push(line.to_owned()),
-            _ => (),
-        }
-    }
-    commands
-}
 
 #[test]
 fn the_page_leads_to_the_right_diagnosis_in_ten_commands_at_most() {
-    let commands = commands();
+    let commands = commands("docs/FIRST-DIAGNOSIS.md");
     assert!(commands.len() <= 10, "{} commands", commands.len());
     let [clone, install, rest @ ..] = &commands[..] else {
         panic!("{commands:?}");

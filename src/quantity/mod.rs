@@ -176,6 +176,19 @@ mod tests {
     }
 
     #[test]
+    fn the_document_has_the_finest_digit_of_each_unit() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/METRICS.md");
+        let document = std::fs::read_to_string(path).unwrap();
+        for decimals in 1..=3 {
+            let own = DECIMALS.iter().filter(|(_, most)| *most == decimals);
+            let units: Vec<&str> = own.map(|(unit, _)| *unit).collect();
+            let digit = 10_f64.powi(-(decimals as i32));
+            let row = format!("| {} | {digit:.decimals$} |", units.join(", "));
+            assert!(document.contains(&row), "docs/METRICS.md lacks {row}");
+        }
+    }
+
+    #[test]
     fn digits_follow_size_and_unit() {
         for (value, unit, text) in [
             (0.0, "N", "0"),

@@ -52,7 +52,7 @@ pub struct Scenario {
     pub controller: ControllerScenario,
     /// Bounds that the results must keep.
     pub expect: Vec<Expectation>,
-    /// Physics beyond the cell, as a diagnosis writes it into improved.toml, with all its numbers; nothing that is simulated.
+    /// Effects beyond the nominal cell, of `[[effect]]` or of improved.toml, with all their numbers.
     pub effects: Vec<PresentEffect>,
     /// Values of tool and edge in use that nobody has measured in public; those of the device are with it.
     pub assumed: Vec<AssumedValue>,

@@ -2,8 +2,8 @@
 
     beyond.py [--concealed ../shared/concealed/beyond] [--answers DIR] [--jobs 2] [--table-only] [case-02 ...]
 
-For every sample off the end stops and in motion, the force that the believed model lacks:
-    left = m (a - g) - (p1 A1 - p2 A2 - p_air (A1 - A2)) + f       a, f measured; p1, p2: the believed chambers along measured outlet and stroke
+For every sample off the end stops and in motion, the force that the nominal model lacks:
+    left = m (a - g) - (p1 A1 - p2 A2 - p_air (A1 - A2)) + f       a, f measured; p1, p2: the nominal chambers along measured outlet and stroke
 Both peers are asked for left = law(variables), VARIABLES below; PySINDy by sparse regression over four libraries, gplearn by
 genetic programming over the same variables. Both deliver one expression in Python's syntax, which is judged and predicted with alike.
 Results go to results_beyond.json, seconds apart from the rest (the rest is the same on a second run), the table to PEERS.md.
@@ -26,14 +26,14 @@ from gplearn.genetic import SymbolicRegressor
 from scipy.optimize import minimize_scalar
 from scipy.signal import lfilter
 
-import believed
+import nominal
 import beyond_judge as judge
 import data
 from pysindy_fit import SLOW, STEP, Channels, Equation, between_stops, sign_of
 
 RESULTS = data.HERE / "results_beyond.json"
 PAGE = data.HERE.parent / "PEERS.md"
-TOLERANCES = {"supply": believed.SUPPLY, "exhaust": believed.EXHAUST, "dead": believed.DEAD}  # believed values that the balance feels
+TOLERANCES = {"supply": nominal.SUPPLY, "exhaust": nominal.EXHAUST, "dead": nominal.DEAD}  # nominal values that the balance feels
 VARIABLES = ("x", "v", "dir", "t", "p1", "p2", "set", "f", "surface")
 FUNCTIONS = {
     "abs": np.abs, "sin": np.sin, "max": np.maximum, "min": np.minimum,
@@ -51,7 +51,7 @@ def scaled(rig, t, x, v, p1, p2, command, f, surface):
 
 
 def calibrated(rig, recordings):
-    """The rig with the believed values that channels tell by themselves fitted to them, no further than their tolerance allows: the regulator's gain
+    """The rig with the nominal values that channels tell by themselves fitted to them, no further than their tolerance allows: the regulator's gain
     and time constant along outlet and command, the contact's stiffness along force and penetration."""
     rig = copy.deepcopy(rig)
 
@@ -83,7 +83,7 @@ def calibrated(rig, recordings):
 
 
 class Law:
-    """A force [N] as an expression in VARIABLES, and believed values moved by a factor beside it (PySINDy's terms of TOLERANCES)."""
+    """A force [N] as an expression in VARIABLES, and nominal values moved by a factor beside it (PySINDy's terms of TOLERANCES)."""
 
     def __init__(self, expression, factors=None):
         self.expression, self.factors = expression, factors or {}
@@ -95,16 +95,16 @@ class Law:
 
 
 class Lack:
-    """What the believed balance lacks in one recording: variables `z`, the force `left` [N], and among the variables what it would lack if one of
-    TOLERANCES were 1 % larger than believed [N]."""
+    """What the nominal balance lacks in one recording: variables `z`, the force `left` [N], and among the variables what it would lack if one of
+    TOLERANCES were 1 % larger than nominal [N]."""
 
     def __init__(self, rig, recording):
-        c, p = Channels(rig, recording), believed.pneumatic_parameters(rig)
-        p[[believed.GAIN, believed.TAU]] = 1.0, 1e-6  # the chambers see the measured outlet
+        c, p = Channels(rig, recording), nominal.pneumatic_parameters(rig)
+        p[[nominal.GAIN, nominal.TAU]] = 1.0, 1e-6  # the chambers see the measured outlet
 
         def air(p):
-            chambers = believed.along(c.t, c.p, c.solenoid, c.x, c.v, p, 20)
-            return chambers, chambers[:, 1] * p[believed.AREA1] - chambers[:, 2] * p[believed.AREA2] - p[believed.AIR] * (p[believed.AREA1] - p[believed.AREA2])
+            chambers = nominal.along(c.t, c.p, c.solenoid, c.x, c.v, p, 20)
+            return chambers, chambers[:, 1] * p[nominal.AREA1] - chambers[:, 2] * p[nominal.AREA2] - p[nominal.AIR] * (p[nominal.AREA1] - p[nominal.AREA2])
 
         chambers, force = air(p)
         kept = between_stops(rig, c) & (np.abs(c.v) > SLOW)  # stops outweigh all else, and at rest friction takes any value
@@ -195,27 +195,27 @@ def by_gplearn(lacks):
 
 
 def predicted(rig, law, recording):
-    """The four channels of a recording from its inputs: the believed model with `law` as one more force on the piston."""
-    par = believed.pneumatic_parameters(rig)
+    """The four channels of a recording from its inputs: the nominal model with `law` as one more force on the piston."""
+    par = nominal.pneumatic_parameters(rig)
     for name, factor in law.factors.items():
         par[TOLERANCES[name]] *= min(max(factor, 0.2), 5.0)
     mass, gravity = rig["cylinder"]["moving_mass_kg"]["value"], rig["cylinder"]["gravity_along_axis_m_per_s2"]
     k, damping = rig["contact"]["stiffness_n_per_m"]["value"], rig["contact"]["damping_n_s_per_m"]["value"]
-    stop_k, stop_c, length = rig["end_stop"]["stiffness_n_per_m"], rig["end_stop"]["damping_n_s_per_m"], par[believed.STROKE]
+    stop_k, stop_c, length = rig["end_stop"]["stiffness_n_per_m"], rig["end_stop"]["damping_n_s_per_m"], par[nominal.STROKE]
     t = recording["time_s"]
     grid = np.arange(0.0, t[-1] + STEP / 2, STEP)
     held = np.searchsorted(t, grid + 1e-9, side="right") - 1
     command, solenoid = recording["set_pressure_pa"][held], recording["solenoid"][held]
     surface = np.interp(grid, t, np.where(np.isnan(recording["surface_m"]), 1.0, recording["surface_m"]))
     surface_rate = np.gradient(surface, grid)
-    state, x, v = believed.at_rest(par), min(0.0, mass * gravity / stop_k), 0.0
+    state, x, v = nominal.at_rest(par), min(0.0, mass * gravity / stop_k), 0.0
     out = np.empty((len(grid), 4))
     for i, now in enumerate(grid):
         depth = x - surface[i]
         touch = max(k * depth + damping * (v - surface_rate[i]), 0.0) if depth > 0 else 0.0
         stop = max(-stop_k * x - stop_c * v, 0.0) if x < 0 else -max(stop_k * (x - length) + stop_c * v, 0.0) if x > length else 0.0
         z = scaled(rig, now, x, v, state[1], state[2], command[i], touch, surface[i])
-        known = believed.force(state, par) + mass * gravity - touch + stop
+        known = nominal.force(state, par) + mass * gravity - touch + stop
 
         def velocity(direction):
             lacking = float(law(z | {"dir": direction}))
@@ -229,7 +229,7 @@ def predicted(rig, law, recording):
         out[i] = touch, x, state[0], (new - v) / STEP
         v = min(max(new, -20.0), 20.0)
         x = min(max(x + STEP * v, -0.1), length + 0.1)
-        believed.step(state, command[i], solenoid[i], x, v, STEP, par, 2)
+        nominal.step(state, command[i], solenoid[i], x, v, STEP, par, 2)
     return {name: np.interp(t, grid, out[:, i]) for i, name in enumerate(data.CHANNELS)}
 
 
@@ -238,10 +238,10 @@ def predicted(rig, law, recording):
 
 def one_case(concealed, case):
     """(case, its row without our answer, seconds of both peers)."""
-    believed_rig = data.rig(concealed, case)
+    nominal_rig = data.rig(concealed, case)
     fit, predict = data.case_recordings(concealed, case)
     with data.Clock() as preparing:
-        rig = calibrated(believed_rig, [*fit.values()])
+        rig = calibrated(nominal_rig, [*fit.values()])
         lacks = [Lack(rig, recording) for recording in fit.values()]
     unseen = lambda law: data.judged(concealed, case, predicted(rig, law, predict))
     true, seconds = judge.true_force(judge.truth_of(concealed, case)), {}

@@ -82,7 +82,7 @@ def record(table, tool, subject, use, row):
 
 # emps ---------------------------------------------------------------------------------------------------------------
 
-EMPS_MASS = 95.11  # believed moving mass [kg]
+EMPS_MASS = 95.11  # nominal moving mass [kg]
 EMPS_FORCE_PER_VOLT = 35.15065  # motor force per volt of controller output [N/V]
 EMPS_KP, EMPS_KV = 160.18, 243.45  # the known loop: position gain [1/s], velocity gain [V/(m/s)]
 EMPS_DROPPED = 50  # samples left out at each end
@@ -110,7 +110,7 @@ def relative_force_error(force, predicted):
 
 # cylinder_friction --------------------------------------------------------------------------------------------------
 
-BORE_AREA = math.pi / 4 * 0.025**2  # believed piston area [m2]
+BORE_AREA = math.pi / 4 * 0.025**2  # nominal piston area [m2]
 SEALS = {"O-ring": "O-ring", "KDN": "KDN"}
 FITTED_BAR, JUDGED_BAR = (1, 7), (3, 5)
 

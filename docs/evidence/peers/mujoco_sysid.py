@@ -5,7 +5,7 @@
 The flow is that of its README.md and sysid.ipynb: Parameter with bounds and a modifier, TimeSeries, ModelSequences, build_residual_fn,
 optimize (backend "mujoco", "recommended"), default_report for its automated insights, calculate_intervals for 95 % intervals.
 Two uses of each subject:
-    believed   only what the believed model states with doubt is free, within that doubt
+    nominal   only what the nominal model states with doubt is free, within that doubt
     mjcf       beside it what MJCF and SignalTransform offer for a device one does not know: joint damping, frictionloss and spring, sensor
                bias, gain and delay, command delay; the same list for every concealed case, chosen without looking at any truth
 Rows go to results.json: parameters with intervals, the toolbox's own messages, error on unseen data, wall and processor seconds.
@@ -18,7 +18,7 @@ import mujoco
 import numpy as np
 from mujoco import sysid
 
-import believed
+import nominal
 import data
 
 SINGLE = {"n_threads": 1}  # two cores are shared here; the toolbox spreads rollouts over all it sees otherwise
@@ -78,7 +78,7 @@ def identify(sequences, params, options=None, build_model=None, optimizer="mujoc
     }
 
 
-# The tutorial's own example: a planted mass must come back, else nothing below is to be believed. -----------------------
+# The tutorial's own example: a planted mass must come back, else nothing below is to be nominal. -----------------------
 
 SPRING_MASS = """
 <mujoco><option timestep="0.002"><flag contact="disable"/></option><worldbody><body name="ball" pos="0 0 0.1">
@@ -189,7 +189,7 @@ def emps(args):
     t, reference, position, force = data.emps(args.recordings)
     motion = np.column_stack(data.emps_motion(t, position))
     half = len(t) // 2
-    for use in ("believed", "mjcf", "believed, known loop", "mjcf, known loop"):
+    for use in ("nominal", "mjcf", "nominal, known loop", "mjcf, known loop"):
         row, loop = {}, use.endswith("loop")
         for span, fitted in (("all", slice(None)), ("first_half", slice(0, half))):
             spec = emps_spec(loop)
@@ -219,7 +219,7 @@ def emps(args):
 def cylinder(args):
     drive = CARRIERS + f'<general name="pressure" joint="axis" gainprm="{-data.BORE_AREA}"/>'
     for seal in data.SEALS:
-        for use in ("believed", "mjcf"):
+        for use in ("nominal", "mjcf"):
             spec = slide_spec(0.5, INVERSE_STEP, '<user name="force" dim="1"/>', drive)  # its mass does not matter: below 0.1 m/s2
             model = spec.compile()
 
@@ -241,7 +241,7 @@ def cylinder(args):
             data.record(args.table, "mujoco", f"cylinder_friction {seal}", use, row)
 
 
-# Concealed cases: tool, end stops and contact in MJCF, the believed pneumatics stepped beside it in a custom rollout. --------------------
+# Concealed cases: tool, end stops and contact in MJCF, the nominal pneumatics stepped beside it in a custom rollout. --------------------
 
 STEP = 0.001  # [s]
 SENSORS = ("stroke_m", "force_n", "acceleration_m_per_s2", "regulator_pressure_pa")
@@ -291,7 +291,7 @@ def cell_model(rig):
 
 
 def cell_pneumatics(rig, params):
-    p = believed.pneumatic_parameters(rig)
+    p = nominal.pneumatic_parameters(rig)
     for name, row in PNEUMATIC.items():
         if name in params:
             p[row] *= params[name].value[0]
@@ -299,8 +299,8 @@ def cell_pneumatics(rig, params):
 
 
 PNEUMATIC = {
-    "regulator_gain": believed.GAIN, "regulator_time_constant": believed.TAU, "supply_orifice": believed.SUPPLY,
-    "exhaust_orifice": believed.EXHAUST, "dead_volume": believed.DEAD,
+    "regulator_gain": nominal.GAIN, "regulator_time_constant": nominal.TAU, "supply_orifice": nominal.SUPPLY,
+    "exhaust_orifice": nominal.EXHAUST, "dead_volume": nominal.DEAD,
 }
 
 
@@ -313,7 +313,7 @@ def cell_rollout(rig):
         pressure = np.interp(times - delay, times, pressure)
         speed = np.gradient(surface, times)
         speed[np.abs(speed) > 1.0] = 0.0  # the workpiece being taken away is no motion
-        state, air, out = believed.at_rest(p), 0.0, np.empty((len(times), len(SENSORS)))
+        state, air, out = nominal.at_rest(p), 0.0, np.empty((len(times), len(SENSORS)))
         d.qpos[0] = model.opt.gravity[0] * model.body_mass[1] / rig["end_stop"]["stiffness_n_per_m"]
         qpos, qvel, ctrl, qacc, sensed = d.qpos, d.qvel, d.ctrl, d.qacc, d.sensordata  # sensed at the step's begin
         for i in range(len(times)):
@@ -321,7 +321,7 @@ def cell_rollout(rig):
             x, v = qpos[0], qvel[0]
             mujoco.mj_step(model, d)
             out[i] = sensed[0], sensed[1], qacc[0], state[0]
-            air = believed.step(state, pressure[i], solenoid[i], x, 0.5 * (v + qvel[0]), STEP, p, 2)
+            air = nominal.step(state, pressure[i], solenoid[i], x, 0.5 * (v + qvel[0]), STEP, p, 2)
         return out
 
     def rollout(models, datas, control_signal, initial_states, param_dicts, rollout_signal_mapping, rollout_state_mapping, ctrl_mapping):
@@ -341,24 +341,24 @@ def cell_rollout(rig):
 
 
 def likely_delay(rig, recordings):
-    """Command delay at which the believed regulator comes nearest to the measured outlet, on a grid [s]: the step that MuJoCo's own example
+    """Command delay at which the nominal regulator comes nearest to the measured outlet, on a grid [s]: the step that MuJoCo's own example
     begins with (mujoco_playground tasks/sysid/so101: "estimate and log the serial command transport delay"), for a local search cannot
     walk from one step of the command to another."""
-    p = believed.pneumatic_parameters(rig)
+    p = nominal.pneumatic_parameters(rig)
     delays, misses = np.arange(0.0, 0.5, 0.01), []
     for delay in delays:
         miss = 0.0
         for r in recordings:
             t = r["time_s"]
             late = sysid.TimeSeries(t, r["set_pressure_pa"][:, None]).interpolate(t - delay, method="zoh")[:, 0]
-            outlet = believed.along(t, late, r["solenoid"], np.zeros_like(t), np.zeros_like(t), p, 1)[:, 0]
+            outlet = nominal.along(t, late, r["solenoid"], np.zeros_like(t), np.zeros_like(t), p, 1)[:, 0]
             miss += np.nansum(np.square(outlet - r["regulator_pressure_pa"]))
         misses.append(miss)
     return float(delays[int(np.argmin(misses))])
 
 
-def cell_parameters(rig, believed_only, delay=0.0, off_bounds=0.05):
-    """Multipliers of the believed values within their tolerance; or, with the rest of what MJCF and SignalTransform offer, a factor of five
+def cell_parameters(rig, nominal_only, delay=0.0, off_bounds=0.05):
+    """Multipliers of the nominal values within their tolerance; or, with the rest of what MJCF and SignalTransform offer, a factor of five
     about them (fifty for the contact, whose order one may not know). What would start on its bound, dry and viscous friction, is moved off
     it by `move_off_bounds`, as the toolbox asks, by the fraction `off_bounds` of the range (0.05 is its default)."""
     stated = {
@@ -367,7 +367,7 @@ def cell_parameters(rig, believed_only, delay=0.0, off_bounds=0.05):
         "supply_orifice": rig["valve"]["supply_orifice_m2"], "exhaust_orifice": rig["valve"]["exhaust_orifice_m2"],
         "contact_stiffness": rig["contact"]["stiffness_n_per_m"], "contact_damping": rig["contact"]["damping_n_s_per_m"],
     }
-    if believed_only:
+    if nominal_only:
         return parameters(*(parameter(name, 1.0, 1 - v["tolerance"], 1 + v["tolerance"]) for name, v in stated.items()))
     freed = parameters(
         *(parameter(name, 1.0, 0.02, 50.0) if name.startswith("contact") else parameter(name, 1.0, 0.2, 5.0) for name in stated),
@@ -399,10 +399,10 @@ def one_case(args, kind, case):
     fit, predict = data.case_recordings(args.concealed, case)
     noise = {name: rig["sensors"][name] for name in SENSORS}
     before = None
-    for use in ("believed", "mjcf"):
+    for use in ("nominal", "mjcf"):
         spec = cell_spec()
         delay = likely_delay(rig, fit.values())
-        params = cell_parameters(rig, use == "believed", delay)
+        params = cell_parameters(rig, use == "nominal", delay)
         build, rollout = cell_model(rig), cell_rollout(rig)
         model = build(params, spec)
 
@@ -444,7 +444,7 @@ def one_case(args, kind, case):
 ROBUST = {"optimizer": "scipy_parallel_fd", "loss": "soft_l1", "x_scale": "jac", "diff_step": 1e-4, "max_iters": 40}
 
 # The fit with everything free stalls where it happens to be ("xtol"), so it is given three starts and the best is kept by the toolbox's own cost:
-# how far dry and viscous friction start off their bound, and whether what is believed sets out from the first use's result or anew.
+# how far dry and viscous friction start off their bound, and whether what is nominal sets out from the first use's result or anew.
 STARTS = ((0.05, True), (0.02, False), (0.002, True))
 
 SUBJECTS = {"tutorial": tutorial, "emps": emps, "cylinder": cylinder, "concealed": concealed}

@@ -15,7 +15,7 @@ import warnings
 import numpy as np
 import pysindy as ps
 
-import believed
+import nominal
 import data
 
 FOLDS = 5
@@ -185,8 +185,8 @@ def cylinder(args):
 #
 #   data alone   every equation from the channels: p' from set pressure and outlet, v' from outlet, solenoid, stroke, velocity, penetration,
 #                the force from penetration, its rate and the force's own rate
-#   discrepancy  the believed model is kept, and PySINDy asked for what it leaves over in each of its three equations: "learning discrepancy
-#                models" (Kaheman et al. 2019, one of PySINDy's authors). The believed chambers run along the measured outlet and stroke.
+#   discrepancy  the nominal model is kept, and PySINDy asked for what it leaves over in each of its three equations: "learning discrepancy
+#                models" (Kaheman et al. 2019, one of PySINDy's authors). The nominal chambers run along the measured outlet and stroke.
 
 STEP = 0.0005  # of a prediction [s]
 SLOW = 0.005  # sign(v) is tanh(v / SLOW), so that it neither chatters at rest nor on the noise of a differentiated stroke [m/s]
@@ -257,7 +257,7 @@ def sensor_candidates(c):
 
 
 def between_stops(rig, c):
-    """Samples off the end stops, whose impacts would outweigh all else; a prediction keeps the believed stops."""
+    """Samples off the end stops, whose impacts would outweigh all else; a prediction keeps the nominal stops."""
     return (c.x > 1e-3) & (c.x < rig["cylinder"]["stroke_m"] - 1e-3)
 
 
@@ -279,18 +279,18 @@ def alone(rig, channels):
 
 
 def left_over(rig, channels):
-    """The three equations of what the believed model leaves over."""
-    p = believed.pneumatic_parameters(rig)
+    """The three equations of what the nominal model leaves over."""
+    p = nominal.pneumatic_parameters(rig)
     mass, gravity = rig["cylinder"]["moving_mass_kg"]["value"], rig["cylinder"]["gravity_along_axis_m_per_s2"]
     k, damping = rig["contact"]["stiffness_n_per_m"]["value"], rig["contact"]["damping_n_s_per_m"]["value"]
     regulator, balance, sensor = [], [], []
     outlet = p.copy()
-    outlet[[believed.GAIN, believed.TAU]] = 1.0, 1e-6  # the chambers see the measured outlet
+    outlet[[nominal.GAIN, nominal.TAU]] = 1.0, 1e-6  # the chambers see the measured outlet
     for c in channels:
-        regulator.append((regulator_candidates(c), (c.p_rate - (p[believed.GAIN] * c.set - c.p) / p[believed.TAU]) * 1e-5))
-        chambers = believed.along(c.t, c.p, c.solenoid, c.x, c.v, outlet, 20)
+        regulator.append((regulator_candidates(c), (c.p_rate - (p[nominal.GAIN] * c.set - c.p) / p[nominal.TAU]) * 1e-5))
+        chambers = nominal.along(c.t, c.p, c.solenoid, c.x, c.v, outlet, 20)
         dp = (chambers[:, 1] - chambers[:, 2]) * 1e-5
-        air = chambers[:, 1] * p[believed.AREA1] - chambers[:, 2] * p[believed.AREA2] - p[believed.AIR] * (p[believed.AREA1] - p[believed.AREA2])
+        air = chambers[:, 1] * p[nominal.AREA1] - chambers[:, 2] * p[nominal.AREA2] - p[nominal.AIR] * (p[nominal.AREA1] - p[nominal.AREA2])
         left = mass * (c.a - gravity) - air + c.force
         moving = between_stops(rig, c) & (np.abs(c.v) > SLOW)
         z = np.column_stack([np.ones_like(c.t), c.x, c.v, sign_of(c.v), c.v * np.abs(c.v), np.abs(dp) * sign_of(c.v), dp])
@@ -305,11 +305,11 @@ def left_over(rig, channels):
 
 
 def predicted(rig, laws, recording, discrepancy):
-    """The recording's four channels, stepped through the discovered equations (and the believed ones where they were kept)."""
-    par = believed.pneumatic_parameters(rig)
+    """The recording's four channels, stepped through the discovered equations (and the nominal ones where they were kept)."""
+    par = nominal.pneumatic_parameters(rig)
     mass, gravity = rig["cylinder"]["moving_mass_kg"]["value"], rig["cylinder"]["gravity_along_axis_m_per_s2"]
     k, damping = rig["contact"]["stiffness_n_per_m"]["value"], rig["contact"]["damping_n_s_per_m"]["value"]
-    stop_k, stop_c, length = rig["end_stop"]["stiffness_n_per_m"], rig["end_stop"]["damping_n_s_per_m"], par[believed.STROKE]
+    stop_k, stop_c, length = rig["end_stop"]["stiffness_n_per_m"], rig["end_stop"]["damping_n_s_per_m"], par[nominal.STROKE]
     t = recording["time_s"]
     grid = np.arange(0.0, t[-1] + STEP / 2, STEP)
     held = np.searchsorted(t, grid + 1e-9, side="right") - 1
@@ -317,8 +317,8 @@ def predicted(rig, laws, recording, discrepancy):
     surface = np.interp(grid, t, np.where(np.isnan(recording["surface_m"]), 1.0, recording["surface_m"]))
     surface_rate = np.gradient(surface, grid)
     outlet = par.copy()
-    outlet[[believed.GAIN, believed.TAU]] = 1.0, 1e-6
-    state, x, v, p, force = believed.at_rest(par), min(0.0, mass * gravity / stop_k), 0.0, 0.0, 0.0
+    outlet[[nominal.GAIN, nominal.TAU]] = 1.0, 1e-6
+    state, x, v, p, force = nominal.at_rest(par), min(0.0, mass * gravity / stop_k), 0.0, 0.0, 0.0
     lag = -laws["sensor"].weights[SENSOR.index("F'")]  # F = rest - lag F'
     weights = laws["sensor"].weights.copy()
     weights[SENSOR.index("F'")] = 0.0
@@ -336,7 +336,7 @@ def predicted(rig, laws, recording, discrepancy):
             steady += touch
             touch = max(touch + reaction_weights @ candidates, 0.0) if depth > 0 else 0.0
             dp = (state[1] - state[2]) * 1e-5
-            known = believed.force(state, par) + mass * gravity - touch + stop
+            known = nominal.force(state, par) + mass * gravity - touch + stop
             a = (known + laws["balance"](1.0, x, v, sign, v * abs(v), abs(dp) * sign, dp)) / mass
         else:
             bar = p * 1e-5
@@ -348,12 +348,12 @@ def predicted(rig, laws, recording, discrepancy):
         ahead = command[i] - p
         p_rate = laws["regulator"](1.0, command[i] * 1e-5, p * 1e-5, abs(ahead) * 1e-5, math.tanh(ahead / 2e3), v) * 1e5
         if discrepancy:
-            p_rate += (par[believed.GAIN] * command[i] - p) / par[believed.TAU]
+            p_rate += (par[nominal.GAIN] * command[i] - p) / par[nominal.TAU]
         p = min(max(p + STEP * p_rate, -1e5), 2e6)
         v = min(max(v + STEP * a, -20.0), 20.0)
         x = min(max(x + STEP * v, -BEYOND), BEYOND)
         if discrepancy:
-            believed.step(state, p, solenoid[i], x, v, STEP, outlet, 2)
+            nominal.step(state, p, solenoid[i], x, v, STEP, outlet, 2)
     return {name: np.interp(t, grid, out[:, i]) for i, name in enumerate(data.CHANNELS)}
 
 

@@ -1,7 +1,7 @@
 """Writes the two tables of PEERS.md, between its `<!-- ... -->` lines, from results.json. Standard library only.
 
 Neither peer says by itself what is missing; what a reader takes from it is read off by one rule for all:
-    MuJoCo    a parameter whose 95 % interval lies wholly outside the tolerance believed; of the extras one whose interval excludes its
+    MuJoCo    a parameter whose 95 % interval lies wholly outside the tolerance nominal; of the extras one whose interval excludes its
               neutral value and that is not lost in the sensors' noise (SMALL)
     PySINDy   a term of the discovered equation whose bagged 95 % spread leaves its sign sure, in the equations of what is left over
 A name is right when it is the concealed effect's own (NAMES), and every other name beside it is counted as false.
@@ -34,13 +34,13 @@ def half_width(p):
     return float("inf") if p["half_width_95"] is None else p["half_width_95"]
 
 
-def departures(row, believed):
+def departures(row, nominal):
     """Names of the parameters of `row` that depart from what the row of the first use was allowed."""
     found = []
     for name, p in row["parameters"].items():
         low, high = p["value"] - half_width(p), p["value"] + half_width(p)
-        if name in believed["parameters"]:
-            stated = believed["parameters"][name]
+        if name in nominal["parameters"]:
+            stated = nominal["parameters"][name]
             if low > stated["high"] or high < stated["low"]:
                 found.append(name)
         else:
@@ -76,7 +76,7 @@ def numbers(parameters):
 def case_row(results, tool, case, use):
     """(what it names, verdict, worst p90 with its channel) of one use on one case."""
     row = results[tool][case][use]
-    named = departures(row, results["mujoco"][case]["believed"]) if tool == "mujoco" else sure_terms(row["equations"])
+    named = departures(row, results["mujoco"][case]["nominal"]) if tool == "mujoco" else sure_terms(row["equations"])
     bound = [i.split("Parameter ")[1].split(" ")[0] for i in row.get("insights", []) if "Bound Hit" in i]
     said = named_list(named) + (f"; at its bound: {named_list(bound)}" if bound else "")
     right = "" if use == "data alone" else verdict(named, NAMES[row["kind"]][tool == "pysindy"])
@@ -87,7 +87,7 @@ def case_row(results, tool, case, use):
 def main():
     here = pathlib.Path(__file__).resolve().parent
     results = json.loads((here / "results.json").read_text())
-    cases = sorted((c for c in results["mujoco"] if c.startswith("case")), key=lambda c: list(NAMES).index(results["mujoco"][c]["believed"]["kind"]))
+    cases = sorted((c for c in results["mujoco"] if c.startswith("case")), key=lambda c: list(NAMES).index(results["mujoco"][c]["nominal"]["kind"]))
     page = (here.parent / "PEERS.md").read_text()
     for name, table in (("side", side_by_side), ("all", every_use)):
         with contextlib.redirect_stdout(io.StringIO()) as rows:

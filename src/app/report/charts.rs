@@ -62,7 +62,7 @@ pub(super) fn channel<'a>(
         within: None,
     };
     let words = capital(CHANNEL_WORDS[index]);
-    // A flange is not simulated: there is what was desired.
+    // Of a flange the desired force stands in place of a nominal model.
     let is_flange = !answer.details.runs.is_empty();
     let nominal = if is_flange { "desired" } else { "as believed" };
     let models = [

@@ -1,4 +1,4 @@
-"""The believed pneumatics of a concealed case (shared/concealed/README.md, "The believed model"), for both peers: neither has gas in it.
+"""The nominal pneumatics of a concealed case (shared/concealed/README.md, "The nominal model"), for both peers: neither has gas in it.
 
 Regulator: tau dp/dt = gain * set - p (gauge). Chambers, isothermal: dp/dt = (R T m' - p V') / V, with V the dead volume and the swept one.
 Orifice between upstream p_u and downstream p_d: m' = Cd A p_u / sqrt(R T) * f(p_d / p_u), f the nozzle function, constant below the
@@ -76,7 +76,7 @@ def at_rest(p):
 
 @numba.njit(cache=True)
 def along(times, set_pressure, solenoid, stroke, velocity, p, sub):
-    """Outlet gauge, chamber pressures [Pa] along a measured motion: what the believed pneumatics would have done."""
+    """Outlet gauge, chamber pressures [Pa] along a measured motion: what the nominal pneumatics would have done."""
     out = np.empty((len(times), 3))
     state = np.array([0.0, p[AIR], p[AIR]])
     for i in range(len(times)):
