@@ -4,7 +4,8 @@ use clap::{Args, ValueEnum};
 
 use super::error::{AppError, ExitCode};
 use super::output::say;
-use crate::{design, import, metrics, scenario};
+use crate::metrics::{BenchSummary, Measured, Summary};
+use crate::{design, import, scenario};
 
 /// For the help.
 pub(super) const EXAMPLES: &str = "\
@@ -61,13 +62,13 @@ impl File {
 
 /// Names the metrics that `[expect]` may bound.
 fn with_metrics(mut schema: serde_json::Value) -> serde_json::Value {
-    schema["then"]["properties"]["expect"]["propertyNames"] = one_of(metrics::BENCH_METRICS);
-    schema["else"]["else"]["properties"]["expect"]["propertyNames"] = one_of(metrics::METRICS);
+    schema["then"]["properties"]["expect"]["propertyNames"] = one_of::<BenchSummary>();
+    schema["else"]["else"]["properties"]["expect"]["propertyNames"] = one_of::<Summary>();
     schema
 }
 
-fn one_of<S>(metrics: &[metrics::Metric<S>]) -> serde_json::Value {
-    let names: Vec<&str> = metrics.iter().map(|metric| metric.name).collect();
+fn one_of<S: Measured>() -> serde_json::Value {
+    let names: Vec<&str> = S::METRICS.iter().map(|metric| metric.name).collect();
     serde_json::json!({ "enum": names })
 }
 
@@ -75,4 +76,16 @@ fn one_of<S>(metrics: &[metrics::Metric<S>]) -> serde_json::Value {
 pub(super) fn run(arguments: &SchemaArguments) -> Result<ExitCode, AppError> {
     say(&format!("{:#}\n", arguments.file.schema()))?;
     Ok(ExitCode::Done)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::metrics::test_planted::Planted;
+
+    #[test]
+    fn every_number_that_is_declared_may_be_bounded() {
+        let names = one_of::<Planted>();
+        assert_eq!(names["enum"][0], "planted_depth_mm");
+    }
 }

@@ -23,6 +23,8 @@ mod passes;
 mod statistics;
 mod summary;
 #[cfg(test)]
+pub(crate) mod test_planted;
+#[cfg(test)]
 mod test_recordings;
 mod window;
 
