@@ -10,12 +10,14 @@ metrics! {
     /// All of them.
     PLANTED;
     always {
-        planted_depth_mm: Option<f64> = "mm", "planted depth", "of a test", Stroke [fact(1), rank(1), column("depth")],
-            "The depth that a test plants.";
+        planted_depth_mm: Option<f64> = "mm", "planted depth", "of a test",
+            "The depth that a test plants.",
+            Stroke [fact(1), rank(1), column("depth")];
     }
     sometimes {
-        planted_share_percent: Option<f64> = "%", "planted share", "of a test", Edge [],
-            "The share that a test plants; absent without it.";
+        planted_share_percent: Option<f64> = "%", "planted share", "of a test",
+            "The share that a test plants; absent without it.",
+            Edge [];
     }
     always {}
     also {}
