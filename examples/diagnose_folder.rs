@@ -1,4 +1,4 @@
-//! A folder with rig.toml and recordings, diagnosed: what the believed model lacks, with numbers and intervals.
+//! A folder with rig.toml and recordings, diagnosed: what the nominal model lacks, with numbers and intervals.
 //!
 //! ```text
 //! fitted in full: 1 explanations

@@ -39,7 +39,7 @@
 //! - [`effects`]: the physics that a description may lack, one effect a file
 //! - [`import`]: logs of real devices made into recordings
 //! - [`case`]: a folder with recordings, read and diagnosed
-//! - [`diagnosis`]: the physics in recordings that the believed model leaves out
+//! - [`diagnosis`]: the physics in recordings that the nominal model leaves out
 //! - [`laboratory`]: recordings of devices by equations of its own, to prove a diagnosis with
 //! - [`proof`]: a diagnosis scored on the laboratory's cases
 //! - [`vary`]: sweeps of a scenario: the values of each run, and what drives its numbers

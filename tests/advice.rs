@@ -71,7 +71,7 @@ fn a_part_out_of_reach_is_moved_and_a_wall_where_it_would_go_is_not_entered() {
 }
 
 #[test]
-fn a_part_that_stands_in_an_obstacle_is_refused_and_moved_out() {
+fn a_part_inside_an_obstacle_is_refused_and_moved_out() {
     let block = "[[obstacle]]\nname = \"clamp\"\nbox_mm = [60, 60, 60]\nposition_mm = [800, 60, 190]\n\n[expect]";
     let bench = Bench::new("plate_edge_ideal");
     bench.replace("scenario.toml", "[expect]", block);

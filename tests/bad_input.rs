@@ -284,7 +284,7 @@ fn obstacles() {
     mesh(&bench, &[[A, C, B], [A, B, TOP], [B, C, TOP], [C, A, TOP]]);
     let outcome = bench.idc(&["check", "scenario.toml"], &[]);
     assert_eq!(outcome.code, 0, "{}", outcome.err);
-    // Wound inwards it is turned, and that is told.
+    // Wound inwards it is turned, and that is reported.
     let bench = Bench::new("plate_edge_ideal");
     mesh(&bench, &[[A, B, C], [A, TOP, B], [B, TOP, C], [C, TOP, A]]);
     let outcome = bench.idc(&["check", "scenario.toml"], &[]);

@@ -161,7 +161,7 @@ fn a_run_in_which_bodies_meet_stops_and_keeps_what_was_recorded() {
 }
 
 #[test]
-fn the_weight_of_the_tool_is_told_with_what_to_change() {
+fn the_weight_of_the_tool_is_reported_with_what_to_change() {
     let down = |force: f64, mass: Option<f64>| {
         let mut scenario = scenario("plate_edge_ideal");
         scenario.process.tool_axis = Some(Direction(DVec3::NEG_Z));

@@ -132,7 +132,7 @@ fn planted(name: &str, speed: f64, desired: f64, ramp: Option<ForceRamp>) -> Run
         .iter()
         .map(|t| force[at(t).min(force.len() - 1)])
         .collect();
-    // What the sensor adds is repeatable and small: the way of the force into the log must still be told.
+    // What the sensor adds is repeatable and small: the way of the force into the log must still be found.
     let noise = |i: usize| 0.05 * (1.7 * (i as f64) * (i as f64)).sin();
     let noisy: Vec<f64> = (readings.iter().zip(&time))
         .map(|(force, t)| force + noise(at(t)))

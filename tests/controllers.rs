@@ -241,7 +241,7 @@ fn in_the_cell_each_takes_out_the_friction() {
     let open = &found[0];
     // From 110 to 100 N, of which the friction is 10 N: within 5 % is within half of it.
     let least = least_settling_time(&device.regulator, 110.0 / area, 100.0 / area, 0.5);
-    // What is told at first touch acts a dead time later.
+    // What is commanded at first touch acts a dead time later.
     let late = open[0].time[0] + device.regulator.dead_time;
     let early = open[0].time.iter().zip(&open[0].error);
     let unavoidable = early

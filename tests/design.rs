@@ -427,7 +427,7 @@ fn draws_at_the_chosen_design_are_the_same_on_any_number_of_threads() {
     let is_assumed = |key: &str| assumed.iter().any(|value| value["key"] == key);
     assert!(is_assumed("device.supply_pressure_bar_gauge") && !is_assumed("device.bore_mm"));
     assert!(page.contains("These numbers rest on values"));
-    // What a draw would be refused for is told before anything is searched.
+    // What a draw would be refused for is reported before anything is searched.
     bench.replace("study.toml", "max = 40", "max = 40000");
     let outcome = run(&bench, None);
     let line = outcome.only_line("error: ");

@@ -52,7 +52,7 @@ fn assert_offset_found(answer: &Value) -> [f64; 3] {
 }
 
 #[test]
-fn a_planted_force_is_found_told_of_and_kept() {
+fn a_planted_force_is_found_reported_and_kept() {
     let bench = Bench::new("plate_edge_ideal");
     case(&bench, "case", OFFSET, Dirt::None);
     let outcome = diagnose(&bench, &["case", "--out", "out"]);
@@ -100,7 +100,7 @@ fn a_planted_force_is_found_told_of_and_kept() {
     let words = account.split_whitespace().collect::<Vec<_>>().join(" ");
     for said in [
         "case: missing: axial_force_offset",
-        "differs from the believed model",
+        "differs from the nominal model",
         "The regulator explains its own recording",
         "Along its measured motion the piston lacks a force of",
         "Force -20.",
@@ -180,7 +180,7 @@ fn nothing_is_found_where_nothing_was_planted() {
 }
 
 #[test]
-fn dirt_is_told_of_and_does_no_harm() {
+fn dirt_is_reported_and_does_no_harm() {
     let bench = Bench::new("plate_edge_ideal");
     case(&bench, "case", OFFSET, Dirt::Much);
     let outcome = diagnose(&bench, &["case", "--out", "out"]);
@@ -407,9 +407,9 @@ fn a_rig_file_that_says_all_of_it_misses_nothing() {
     );
 }
 
-// Catches: effects told in another order, or each file in one of its own. What explains the most is told first, whatever its name.
+// Catches: effects listed in another order, or each file in one of its own. What explains the most comes first, whatever its name.
 #[test]
-fn the_effect_that_explains_the_most_is_told_first_in_every_file() {
+fn the_effect_that_explains_the_most_comes_first_in_every_file() {
     let gain = |gain: f64| format!("\n[effect.force_sensor_gain_error]\ngain = {gain}\n");
     let delay = |seconds: f64| format!("\n[effect.transport_delay]\ndelay_s = {seconds}\n");
     let of_gain = ["force_sensor_gain_error", "transport_delay"];

@@ -124,7 +124,7 @@ fn the_page_of_a_part_has_the_numbers_of_its_list() {
 }
 
 #[test]
-fn an_inside_edge_is_told_and_has_no_lines_to_paste() {
+fn an_inside_edge_is_reported_and_has_no_lines_to_paste() {
     let bench = Bench::new("plate_edge_ideal");
     bench.write("bracket.stl", angle_bracket());
     let outcome = bench.idc(&["edges", "bracket.stl", "--out", "page.html"], &[]);
@@ -354,7 +354,7 @@ fn mesh_files_that_people_have_are_read_as_their_formats_have_them() {
 }
 
 #[test]
-fn a_page_goes_where_nothing_stands() {
+fn a_page_overwrites_nothing() {
     let bench = Bench::new("plate_edge_ideal");
     let words = ["edges", "part.stl", "--out", "page.html"];
     assert_eq!(bench.idc(&words, &[]).code, 0);

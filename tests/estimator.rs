@@ -105,7 +105,7 @@ fn score(scenario: BenchScenario) -> Score {
     score
 }
 
-/// An estimator that believes a device and tolerances.
+/// An estimator with a nominal device and tolerances.
 fn believing(
     scenario: &BenchScenario,
     device: &DeviceParameters,
@@ -188,7 +188,7 @@ fn devices_off_their_data_within_the_usual_tolerances_are_covered() {
 }
 
 #[test]
-fn a_friction_believed_badly_wrong_is_not_covered() {
+fn a_nominal_friction_far_off_is_not_covered() {
     for nominal in [0.0, 5.0, 20.0] {
         let mut scenario = scenario(0.5, FIRST_SEED + 200);
         let mut device = scenario.nominal.device.clone();

@@ -1,4 +1,4 @@
-//! `idc fleet`: what sets in in a device is found where and since when; where nothing is planted nothing is told; what was done is not done again.
+//! `idc fleet`: what sets in in a device is found where and since when; where nothing is planted nothing is reported; what was done is not done again.
 
 use std::collections::BTreeMap;
 use std::path::Path;

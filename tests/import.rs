@@ -377,7 +377,7 @@ fn a_folder_of_logs_makes_a_recording_each_by_its_name() {
 }
 
 #[test]
-fn what_was_understood_is_told_to_people_to_programs_or_to_nobody() {
+fn what_was_understood_is_reported_to_people_to_programs_or_to_nobody() {
     let folder = Folder::new();
     plain(&folder, &["a.csv", "b.csv"]);
     // A row twice, and one with a time that was there.

@@ -1,5 +1,5 @@
 //! The project's own cell, simulated with Rapier, one thing planted in it: what its runs show, handed to `idc diagnose` as they are, is named, placed, sized,
-//! and predicts another path better; in a cell as believed nothing is found.
+//! and predicts another path better; in a nominal cell nothing is found.
 
 use std::fs::File;
 use std::path::Path;
@@ -257,7 +257,7 @@ fn diagnosed(job: &Job, all: &[Planted]) -> Bench {
     let bench = Bench::new("plate_edge_ideal");
     let asset = project(&format!("assets/{}", job.part));
     std::fs::copy(asset, bench.path(job.part)).unwrap();
-    bench.write("believed.toml", scenario(job, &PROGRAMS[0], &NOTHING));
+    bench.write("nominal.toml", scenario(job, &PROGRAMS[0], &NOTHING));
     for planted in all {
         for program in &PROGRAMS {
             bench.write("run.toml", scenario(job, program, planted));
@@ -270,7 +270,7 @@ fn diagnosed(job: &Job, all: &[Planted]) -> Bench {
     bench
 }
 
-/// Diagnoses all cases of a bench against what is believed.
+/// Diagnoses all cases of a bench against the nominal model.
 fn diagnose_cases(bench: &Bench) {
     let outcome = bench.idc(
         &[
@@ -278,7 +278,7 @@ fn diagnose_cases(bench: &Bench) {
             "cases",
             "--all",
             "--scenario",
-            "believed.toml",
+            "nominal.toml",
             "--out",
             "out",
             "--quiet",
@@ -337,7 +337,7 @@ fn holds(bench: &Bench, planted: &Planted, job: usize) {
 }
 
 #[test]
-fn in_runs_as_believed_nothing_is_found_and_a_joint_that_rubs_is_named() {
+fn in_nominal_runs_nothing_is_found_and_a_joint_that_rubs_is_named() {
     let all = [NOTHING, RUBBING];
     let bench = diagnosed(&PLATE, &all);
     for planted in &all {
@@ -381,7 +381,7 @@ fn a_burr_is_found_before_it_is_ground_off_and_not_after() {
     let bench = Bench::new("plate_edge_ideal");
     let asset = project(&format!("assets/{}", PLATE.part));
     std::fs::copy(asset, bench.path(PLATE.part)).unwrap();
-    bench.write("believed.toml", scenario(&PLATE, &PROGRAMS[0], &NOTHING));
+    bench.write("nominal.toml", scenario(&PLATE, &PROGRAMS[0], &NOTHING));
     let measured = |case: &str, edited: &dyn Fn(String) -> String, planted: &Planted| {
         for program in &PROGRAMS {
             bench.write("run.toml", edited(scenario(&PLATE, program, planted)));

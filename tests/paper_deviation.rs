@@ -12,7 +12,7 @@ use bench::{Edit, LEVELS, Level, Shown, run, run_all};
 use rayon::prelude::*;
 use terms::{NEVER, NEWTON_PER_BAR, Seen, TERMS, Term};
 
-use crate::paper_page::{markdown, stands_in_the_page};
+use crate::paper_page::{is_in_the_page, markdown};
 
 /// Half a unit of the last printed digit [%].
 const ROUNDING: f64 = 0.05;
@@ -151,7 +151,7 @@ fn sizes_that_single_terms_need() {
         cells.extend([where_it_shows.to_owned(), term.plausible.to_owned()]);
         rows.push(cells);
     }
-    stands_in_the_page("terms", &markdown(&rows));
+    is_in_the_page("terms", &markdown(&rows));
 }
 
 /// In whatever way a deviation is counted, a term that goes one way with the pressure cannot be 6.0 at 1.2, 6.5 at 1.8 and 6.3 at 2.1 bar.
@@ -197,7 +197,7 @@ fn what_cannot_give_a_deviation_of_any_size() {
         "{}: each at most 0.02 % of pressure or force at any of the four.\n",
         names.join("; ")
     );
-    stands_in_the_page("never", &line);
+    is_in_the_page("never", &line);
 }
 
 #[test]

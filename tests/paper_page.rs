@@ -35,7 +35,7 @@ pub fn row<const N: usize>(cells: [&str; N]) -> Vec<String> {
 }
 
 /// Holds a table against the one between its two markers in the page, which says the same or is out of date.
-pub fn stands_in_the_page(name: &str, table: &str) {
+pub fn is_in_the_page(name: &str, table: &str) {
     // Tests that write run side by side.
     static WRITING: std::sync::Mutex<()> = std::sync::Mutex::new(());
     let _held = WRITING.lock().unwrap();
@@ -134,7 +134,7 @@ fn the_six_figures_in_numbers() {
     let speeds = finished.recording.values(schema::STROKE_VELOCITY).unwrap();
     let meets = speeds.iter().copied().fold(0.0, f64::max);
     assert!((meets - 0.3).abs() < 0.05, "the page says 0.3 m/s: {meets}");
-    stands_in_the_page("figures", &markdown(&rows));
+    is_in_the_page("figures", &markdown(&rows));
 }
 
 #[test]
@@ -191,7 +191,7 @@ fn force_is_proportional_to_pressure_until_the_adc_is_full() {
         read_line(&meant.summary, 3),
     );
     assert!((slope / (1e5 * area) - 1.0).abs() < 5e-3 && off < 0.2);
-    stands_in_the_page("line", &markdown(&rows));
+    is_in_the_page("line", &markdown(&rows));
 }
 
 #[test]
@@ -253,7 +253,7 @@ fn the_load_cells_chain_in_numbers() {
             format!("{raw:.2} N, {treated:.2} N"),
         ],
     ];
-    stands_in_the_page("load cell", &markdown(&rows));
+    is_in_the_page("load cell", &markdown(&rows));
 }
 
 #[test]
@@ -291,7 +291,7 @@ fn a_hand_moves_the_tool_and_the_force_stays() {
         summary.stroke_max_mm.unwrap(),
         summary.force_mean_n.unwrap(),
     );
-    stands_in_the_page("hand", &line);
+    is_in_the_page("hand", &line);
 }
 
 /// Words of a picture: its numbers, and what stands between them.

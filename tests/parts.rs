@@ -205,7 +205,7 @@ fn chamber(rate: impl Fn(f64) -> f64, shut: f64) -> (String, &'static str, Vec<V
 const CLOSED: &str = "[rig]\nchain = \"closed_chamber\"\n[sensors]\nregulator_pressure_pa = 200\nregulator_pressure_drift_pa_per_s = 3.0";
 
 #[test]
-fn a_tight_chamber_lacks_nothing_and_a_leak_that_pressure_opens_is_told_from_others() {
+fn a_tight_chamber_lacks_nothing_and_a_leak_that_pressure_opens_is_distinguished() {
     let tight = diagnosed(case(CLOSED, &[chamber(|_| 0.0, 0.0)]).path());
     assert_eq!(
         tight.verdict,
@@ -256,7 +256,7 @@ fn a_small_leak_is_certain_and_its_law_is_open() {
 }
 
 #[test]
-fn a_regulator_with_a_small_valve_and_a_wrong_zero_is_told() {
+fn a_regulator_with_a_small_valve_and_a_wrong_zero_is_found() {
     let mut random = ChaCha8Rng::seed_from_u64(4);
     let mut pressure: f64 = 0.0;
     let rows = (0..30_000)

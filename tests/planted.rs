@@ -47,7 +47,7 @@ fn an_effect_below_the_noise_is_not_named() {
     assert_eq!(answer.explained, Some(Extent::Fully));
 }
 
-/// What is told as the smallest that would have shown is that: at twice the size something is named, if not always that, and at a third nothing is.
+/// What is reported as the smallest that would have shown is that: at twice the size something is named, if not always that, and at a third nothing is.
 #[test]
 fn the_smallest_effect_that_shows_is_that() {
     let (nothing, _) = diagnosed("nothing", 78, &[]);

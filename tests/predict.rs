@@ -145,7 +145,7 @@ fn columns(bench: &Bench) -> Vec<Vec<f64>> {
 }
 
 #[test]
-fn a_believed_rig_comes_to_rest_on_the_balance_of_its_forces() {
+fn a_nominal_rig_comes_to_rest_on_the_balance_of_its_forces() {
     let bench = folder();
     let outcome = predict(&bench);
     assert_eq!(outcome.code, 0, "{}", outcome.err);

@@ -350,7 +350,7 @@ fn surface(
 /// Catches: the sign of an encoder's offset, which a cell that is recorded and diagnosed by the same model does not show. A servo closes on the encoder: where
 /// that reads too much, the arm stands as if it had been commanded so much less.
 #[test]
-fn a_joint_whose_encoder_reads_too_much_stands_short_of_its_command() {
+fn a_joint_whose_encoder_reads_too_much_stays_short_of_its_command() {
     const OFFSET: f64 = 1e-3;
     let bench = Bench::new("plate_edge_ideal");
     bench.write("cell.toml", CELL);
@@ -428,7 +428,7 @@ fn an_encoder_s_offset_moves_the_simulated_slide_as_the_replayed_one() {
 
 /// Catches: a burr that is met a sample early or late. With servos that do not lag, the slide gives way where the burr stands.
 #[test]
-fn a_burr_is_met_where_it_stands_to_a_fraction_of_a_sample() {
+fn a_burr_is_met_where_it_is_to_a_fraction_of_a_sample() {
     let burr = Burr {
         height: 2e-4,
         position: 0.06,
@@ -505,7 +505,7 @@ fn predicts(file: &Path, truth: &[Vec<f64>], name: &str) {
 }
 
 #[test]
-fn a_recorded_cell_is_nothing_to_run_and_its_file_says_what_is_believed_alone() {
+fn a_recorded_cell_is_nothing_to_run_and_its_file_holds_nominal_values_alone() {
     let bench = Bench::new("plate_edge_ideal");
     bench.write("cell.toml", CELL);
     let message = load_any(&bench.path("cell.toml")).unwrap_err().to_string();

@@ -328,7 +328,7 @@ fn a_tool_that_lies_along_the_normal_does_not_cut_and_is_refused() {
         matches!(refused, CellError::ConeOffEdge { .. }),
         "{refused}"
     );
-    // The angle that is told puts the flank on the edge.
+    // The reported angle puts the flank on the edge.
     cell.tool.as_mut().unwrap().tool.lean = std::f64::consts::FRAC_PI_2 - 0.5;
     assert!(Cell::new(cell).is_ok());
 }

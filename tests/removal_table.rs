@@ -66,7 +66,7 @@ fn bench(rows: &str) -> Bench {
 
 /// What `idc new` writes is a case as it stands, `idc check` explains it, and its diagnosis names what the made-up rows have.
 #[test]
-fn a_new_table_is_checked_and_diagnosed_as_it_stands() {
+fn a_new_table_is_checked_and_diagnosed_unchanged() {
     let bench = Bench::new("plate_edge_ideal");
     let new = bench.idc(&["new", "removal_table", "mine/rig.toml"], &[]);
     assert_eq!(new.code, 0, "{}", new.err);
@@ -129,7 +129,7 @@ fn exponent_and_wear_are_named_and_the_improved_law_predicts_another_table() {
         (value - 2.05).abs() < 0.15 && low < 2.05 && 2.05 < high,
         "{exponent}"
     );
-    // The improved file predicts rows that it has not seen to their scatter, the believed one does not.
+    // The improved file predicts rows that it has not seen to their scatter, the nominal one does not.
     bench.write("other.csv", table(2, law));
     let off = |file: &str| -> f64 {
         let outcome = bench.idc(
@@ -150,7 +150,7 @@ fn exponent_and_wear_are_named_and_the_improved_law_predicts_another_table() {
     };
     let improved = off("found/improved.toml");
     assert!(improved < 0.075, "{improved}");
-    // Taken as believed, nothing is missing any more.
+    // Taken as nominal, nothing is missing any more.
     std::fs::create_dir_all(bench.path("again")).unwrap();
     let text = std::fs::read_to_string(bench.path("found/improved.toml")).unwrap();
     bench.write("again/rig.toml", text);

@@ -88,9 +88,9 @@ fn the_page_of_a_run_comes_again_and_names_bounds_that_were_not_kept() {
     assert!(!text.contains("over the following phase"));
 }
 
-// Catches: a value that is declared judged and not told, one told that is declared otherwise, and a study that says nothing of them.
+// Catches: a value that is declared assumed and not listed, one listed that is declared otherwise, and a study that says nothing of them.
 #[test]
-fn a_run_says_which_of_its_numbers_rest_on_judged_values() {
+fn a_run_says_which_of_its_numbers_rest_on_assumed_values() {
     let bench = Bench::new("deburred_edge");
     bench.replace("scenario.toml", "end_mm = 290", "end_mm = 50");
     bench.replace("scenario.toml", "friction_coefficient = 0.3\n", "");
@@ -279,7 +279,7 @@ fn what_is_read_is_not_written_and_what_is_refused_leaves_nothing() {
 /// `--json` once ended in a panic where a name was no UTF-8.
 #[cfg(unix)]
 #[test]
-fn names_that_are_no_text_are_told_as_far_as_they_are() {
+fn names_that_are_no_text_are_shown_as_far_as_they_are() {
     use std::ffi::OsStr;
     use std::os::unix::ffi::OsStrExt as _;
     let bench = Bench::new("paper_step");

@@ -74,7 +74,7 @@ fn agrees(path: &str, claim: &str, values: &[f64]) {
         let half = 0.5 * 10f64.powi(-(decimals as i32)) + 1e-9;
         assert!(
             (number - value).abs() <= half,
-            "{path}: {claim}: {text} is told, {value} worked out"
+            "{path}: {claim}: {text} is stated, {value} worked out"
         );
     }
 }

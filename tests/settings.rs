@@ -235,7 +235,7 @@ fn what_cannot_be_is_refused_before_anything_is_run() {
 }
 
 #[test]
-fn a_run_that_stands_is_kept_by_resume_if_it_is_the_same() {
+fn an_existing_run_is_kept_by_resume_if_it_is_the_same() {
     let bench = bench();
     let run = |values: &str, flag: &str| {
         let set = format!("command[0].force_n={values}");
@@ -321,7 +321,7 @@ fn an_interrupted_command_ends_where_nobody_reads_its_message() {
     panic!("it has not ended");
 }
 
-/// Nothing half written remains, what is whole does, and it is told.
+/// Nothing half written remains, what is whole does, and a message says so.
 #[cfg(unix)]
 #[test]
 fn an_interrupted_command_keeps_what_is_whole_and_says_so() {

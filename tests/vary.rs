@@ -120,7 +120,7 @@ fn each_row_is_the_run_that_idc_run_makes_with_its_values() {
 }
 
 #[test]
-fn what_stands_is_not_done_again_and_a_sweep_may_grow() {
+fn existing_results_are_not_done_again_and_a_sweep_may_grow() {
     let bench = plate();
     assert_eq!(vary(&bench, "out", &["--quiet"]).code, 0);
     let before = results(&bench, "out");
@@ -419,7 +419,7 @@ fn dask_and_snakemake_make_the_same_table_with_and_without_a_shared_folder() {
     }
 }
 
-// Catches: a seed that does nothing told to drive the force, a length between whole ends that has three values, bounds kept that nobody set.
+// Catches: a seed that does nothing reported to drive the force, a length between whole ends that has three values, bounds kept that nobody set.
 #[test]
 fn what_does_nothing_is_not_named_and_between_whole_ends_a_length_is_any_number() {
     let bench = plate();
@@ -539,7 +539,7 @@ fn the_picture_of_places_has_robot_obstacles_and_part() {
 
 /// Paths of what is read stay what they are: the plan leads to them from its own folder.
 #[test]
-fn a_plan_that_stands_elsewhere_leads_to_the_same_files() {
+fn a_plan_elsewhere_leads_to_the_same_files() {
     let bench = plate();
     let out = [
         "vary",

@@ -49,7 +49,7 @@ pub fn run() -> Result<Vec<Call>, String> {
         return Err(error.lines().last().unwrap_or("it failed").to_owned());
     }
     let report: Value = serde_json::from_str(said.trim()).map_err(|error| error.to_string())?;
-    let runs = report["runs"].as_array().ok_or("it told no runs")?;
+    let runs = report["runs"].as_array().ok_or("its report has no runs")?;
     let calls: Option<Vec<Call>> = runs.iter().map(call).collect();
     calls.ok_or_else(|| "its runs are not understood".to_owned())
 }

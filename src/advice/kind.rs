@@ -35,7 +35,7 @@ pub(super) enum Kind {
     Bore,
     /// Stroke at which the device works.
     WorkingStroke,
-    /// The part believed where it really is.
+    /// The nominal pose moved to the actual one.
     Located,
     /// Radius of the tool's ball.
     Ball,

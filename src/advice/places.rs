@@ -334,7 +334,7 @@ fn edge_towards_robot(setup: &Setup, outward: DVec3) -> Vec<DQuat> {
         .to_vec()
 }
 
-/// The part believed where it really is, as if it had been measured.
+/// The nominal pose moved to the actual one, as if it had been measured.
 pub(super) fn located(trial: &Trial<'_>, setup: &Setup) -> Option<Remedy> {
     let nominal = setup.scenario.workpiece.world_from_part;
     let edge = &setup.part.edge;

@@ -98,7 +98,7 @@ pub struct Trial<'a> {
 pub struct RunOptions<'a> {
     /// Runs a cell; none where nothing could be measured.
     pub runs: &'a (dyn Fn(&Cell) -> Option<RunOutcome> + Sync),
-    /// Is told what is looked for.
+    /// Is given what is looked for.
     pub tell: &'a (dyn Fn(&'static str) + Sync),
     /// Whether to go on: the user's patience.
     pub keep_on: &'a (dyn Fn() -> bool + Sync),

@@ -1,4 +1,4 @@
-//! What would make a job possible, looked for when it is refused, and told with the refusal.
+//! What would make a job possible, looked for when it is refused, and reported with the refusal.
 
 use std::io::IsTerminal as _;
 use std::time::{Duration, Instant};
@@ -14,7 +14,7 @@ use crate::scenario::{KeyValue, ScenarioTemplate};
 
 /// Time that a search of the usual extent may take [s]; it is shorter unless the computer is slow or busy.
 const PATIENCE: f64 = 20.0;
-/// Where there is no terminal nothing is told of a search that takes less.
+/// Where there is no terminal nothing is reported of a search that takes less.
 const SHORT: Duration = Duration::from_secs(2);
 
 /// Extent of the search for advice.

@@ -66,7 +66,7 @@ enum Command {
     /// Make a recording of the logs of a real device, as a map says what their columns are.
     #[command(after_help = help::IMPORT)]
     Import(super::import::ImportArguments),
-    /// Say what a rig file, believed or improved, predicts for the inputs of a recording.
+    /// Say what a rig file, nominal or improved, predicts for the inputs of a recording.
     #[command(after_help = help::PREDICT)]
     Predict(super::predict::PredictArguments),
     /// Find what physics the recordings of a rig contain that its model leaves out.

@@ -1,4 +1,4 @@
-//! `idc effects`: what physics there is that a model may lack, told and shown.
+//! `idc effects`: what physics there is that a model may lack, described and drawn.
 
 mod gallery;
 mod page;
@@ -21,7 +21,7 @@ use picture::picture;
 /// For the help.
 pub(super) const EXAMPLES: &str = "\
 docs/EFFECTS.md holds all of it, with the pictures. A picture is two runs of a
-short scenario, as believed and with the effect at its usual size: the signals
+short scenario, nominal and with the effect at its usual size: the signals
 that show it most, at the time at which they do.
 
 Exit codes: 0 done, 2 bad input, or a file that stands already (--force).
@@ -57,7 +57,7 @@ pub(super) struct EffectsArguments {
     /// Print nothing but errors.
     #[arg(long, help_heading = "Output")]
     quiet: bool,
-    /// Print what is told as JSON.
+    /// Print the description as JSON.
     #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
     json: bool,
 }

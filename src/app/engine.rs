@@ -42,7 +42,7 @@ pub(super) struct Tasks<'a> {
     pub word: &'static str,
     /// Words of what is kept: `runs are done`.
     pub are: &'static str,
-    /// Whether nothing but errors is told.
+    /// Whether nothing but errors is printed.
     pub quiet: bool,
     /// Does a task and puts its result into the store.
     pub work: &'a (dyn Fn(&Task) -> Result<(), TaskError> + Sync),

@@ -91,9 +91,9 @@ pub(super) const PREDICT: &str = "\
 Exit codes: 0 done, 2 bad input.
 
 Examples:
-  # What the believed rig makes of a recording's inputs, and how far off it is.
+  # What the nominal rig makes of a recording's inputs, and how far off it is.
   idc predict assets/proof/cases/case-03/rig.toml \\
-      assets/proof/cases/case-03/ride.csv --out runs/believed.csv
+      assets/proof/cases/case-03/ride.csv --out runs/nominal.csv
   # The same as numbers for a program.
   idc predict assets/proof/cases/case-03/rig.toml \\
       assets/proof/cases/case-03/ride.csv --out runs/again.csv --json
@@ -125,7 +125,7 @@ Examples:
       --resume --json
   # Every case below a folder, going on where it was stopped. (takes minutes)
   idc diagnose assets/proof/cases --all --out runs/cases --resume
-  # Cases of a robot cell: the scenario is what is believed. (takes minutes)
+  # Cases of a robot cell: the scenario is the nominal model. (takes minutes)
   idc diagnose recordings --all --scenario cell.toml --out runs/cell";
 
 /// `idc prove`.

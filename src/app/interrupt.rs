@@ -1,4 +1,4 @@
-//! Ctrl-C, or a request to end: what is half written goes, what is whole is kept, and it is told which that is and how to go on. The program then ends as
+//! Ctrl-C, or a request to end: what is half written goes, what is whole is kept, and a message says which that is and how to go on. The program then ends as
 //! one does that is interrupted, so that a shell's loop ends with it (130 in `$?`; 143 after SIGTERM).
 
 use std::path::Path;
@@ -16,7 +16,7 @@ pub(super) struct Interruptible {
 }
 
 impl Interruptible {
-    /// One of which this is told: what is kept, and how to go on. It is given how many parts are done.
+    /// One with this message: what is kept, and how to go on. It is given how many parts are done.
     pub(super) fn new(tell: impl Fn(usize) -> String + Send + 'static) -> Self {
         let done = Arc::<AtomicUsize>::default();
         let own = Arc::clone(&done);
@@ -69,7 +69,7 @@ fn set(tell: Option<Tell>) {
     *TELL.lock().unwrap_or_else(PoisonError::into_inner) = tell;
 }
 
-/// Begins to listen. With `json` it is told as errors are.
+/// Begins to listen. With `json` the message has the form of errors.
 #[cfg(unix)]
 pub fn listen(json: bool) {
     use signal_hook::consts::{SIGINT, SIGTERM};

@@ -91,7 +91,7 @@ pub(super) struct NewArguments {
 enum Kind {
     /// A scenario: arm, device and part.
     Cell,
-    /// A rig file: a device as its owner believes it to be.
+    /// A rig file: a device by its nominal values.
     Rig,
     /// An import map: what the columns of a log are.
     Import,

@@ -172,7 +172,7 @@ fn obstacles(cell: &Cell) -> impl Iterator<Item = SceneBody> {
     })
 }
 
-/// What is checked for collisions, but for the floor, which would hide the cell: the part where it is believed to be.
+/// What is checked for collisions, but for the floor, which would hide the cell: the part at its nominal pose.
 fn collision_shapes(cell: &Cell) -> Vec<CollisionShape> {
     let checked = cell.setup.collision.bodies_with_roles();
     let shown = checked.filter(|(role, _)| *role != Role::Floor);

@@ -175,7 +175,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_left_is_told_to_a_digit_and_no_longer_than_it_holds() {
+    fn the_time_left_is_shown_to_a_digit_and_no_longer_than_it_holds() {
         let after = |seconds: f64, mark| left(Duration::from_secs_f64(seconds), mark);
         assert_eq!(after(3.0, None), "");
         // A third was done after 10 s.

@@ -9,7 +9,7 @@ use crate::plant::follow;
 use crate::recording::csv::CellRecording;
 use crate::replay::LoadedCell;
 
-/// Errors before and after of the joints whose servos or friction were found to be others than believed.
+/// Errors before and after of the joints whose servos or friction were found to differ from their nominal values.
 pub(super) fn arm_prediction(
     cell: &LoadedCell,
     name: &str,

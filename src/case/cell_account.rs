@@ -24,7 +24,7 @@ pub(super) fn add_cell(
     account.add(SectionKind::Arm, arm(cell, read, diagnosis));
     account.add(SectionKind::PathPlaces, places(diagnosis));
     if diagnosis.shape.is_some() {
-        let place = "A cell's improved.toml has no place for a term without a name: it stands in prediction.csv alone.";
+        let place = "A cell's improved.toml has no place for a model discrepancy: it stands in prediction.csv alone.";
         account.add(SectionKind::NotWritten, vec![place.to_owned()]);
     }
 }
@@ -60,9 +60,9 @@ fn arm(cell: &LoadedCell, read: &CellCase, diagnosis: &Diagnosis) -> Vec<String>
                     "Hz"
                 ),
                 if servo.differs() {
-                    format!("not {} Hz as believed", cell.scenario.nominal.cell.servo_bandwidth)
+                    format!("not the nominal {} Hz", cell.scenario.nominal.cell.servo_bandwidth)
                 } else {
-                    "as believed".to_owned()
+                    "as nominal".to_owned()
                 },
                 servo.left.len(),
                 left.join(", ")
@@ -71,7 +71,7 @@ fn arm(cell: &LoadedCell, read: &CellCase, diagnosis: &Diagnosis) -> Vec<String>
     }
     for friction in &read.frictions {
         arm.push(format!(
-            "By its drive's torque joint {} rubs with {}, believed {}{}.",
+            "By its drive's torque joint {} rubs with {}, nominal {}{}.",
             friction.joint + 1,
             with_interval(
                 friction.friction,
@@ -90,7 +90,7 @@ fn arm(cell: &LoadedCell, read: &CellCase, diagnosis: &Diagnosis) -> Vec<String>
         let (words, unit, factor) = of_column(&error.channel);
         let size = |value: f64| format!("{} {unit}", significant(factor * value, 3));
         arm.push(format!(
-            "RMS error of the {words} in {}, which was kept back: {} as believed, {} improved.",
+            "RMS error of the {words} in {}, which was kept back: {} nominal, {} improved.",
             error.recording,
             size(error.before),
             size(error.after)

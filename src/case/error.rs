@@ -23,7 +23,7 @@ pub enum CaseError {
     Recorded(#[from] RecordedError),
     /// A law that a user tries, without a value somewhere in the recordings.
     #[error(
-        "--try: at `{part}`, character {location} of the expression: it is not finite in {recording} at {time_s:.4} s, as the believed model runs it; expected a value there for all its constants' ranges"
+        "--try: at `{part}`, character {location} of the expression: it is not finite in {recording} at {time_s:.4} s, as the nominal model runs it; expected a value there for all its constants' ranges"
     )]
     TriedNotFinite {
         /// The part.
@@ -91,9 +91,9 @@ pub enum CaseError {
         /// The pattern.
         pattern: String,
     },
-    /// A rig file that carries a term without a name already.
+    /// A rig file that carries a model discrepancy already.
     #[error(
-        "{file} holds [latent], a term that a diagnosis found; expected the rig file as believed, to diagnose from (idc predict takes this one)"
+        "{file} holds [latent], a term that a diagnosis found; expected the nominal rig file, to diagnose from (idc predict takes this one)"
     )]
     Latent {
         /// Rig file.

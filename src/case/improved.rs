@@ -1,4 +1,4 @@
-//! improved.toml: the believed model's file with what was found, in the vocabulary of effects.
+//! improved.toml: the nominal model's file with what was found, in the vocabulary of effects.
 
 use crate::diagnosis::answer::estimate::Number;
 use crate::diagnosis::answer::finding::Diagnosis;
@@ -11,7 +11,7 @@ use crate::scenario::rig_file::{
 
 use super::ground::covered;
 
-/// The effects of an improved file: what the believed one names already stays, unless what was found stands in its place.
+/// The effects of an improved file: what the nominal one names already stays, unless what was found stands in its place.
 pub(super) fn written<'a>(
     present: &'a [PresentEffect],
     diagnosis: &'a Diagnosis,
@@ -51,7 +51,7 @@ pub(super) fn written<'a>(
     kept.chain(new).chain(formula(diagnosis)).collect()
 }
 
-/// The formula of a term without a name, if it is one.
+/// The formula of a model discrepancy, if it is one.
 fn formula(diagnosis: &Diagnosis) -> Option<WrittenEffect<'_>> {
     let law = &diagnosis.best().formula()?.law;
     let numbers = diagnosis.estimates.formula.iter();

@@ -1,4 +1,4 @@
-//! A case of a diagnosis: a folder with recordings, and the model that is believed of what they were recorded from.
+//! A case of a diagnosis: a folder with recordings, and the nominal model of what they were recorded from.
 
 mod arm_prediction;
 mod band;
@@ -267,7 +267,7 @@ impl Case {
     }
 }
 
-/// Diagnoses a case; `observer` is told of its progress.
+/// Diagnoses a case; `observer` gets its progress.
 ///
 /// # Errors
 /// An improved model that cannot be written or simulated, a source that cannot be read again.
@@ -322,7 +322,7 @@ pub fn diagnose(
     Ok(diagnosed)
 }
 
-/// Checks that a law is finite at every sample of the recordings, as the believed model runs them.
+/// Checks that a law is finite at every sample of the recordings, as the nominal model runs them.
 fn check_in_recordings(law: &LawText, input: &DiagnosisInput) -> Result<(), CaseError> {
     for recording in input.recordings.iter().chain(&input.unseen) {
         let inputs = &recording.recorded.inputs;

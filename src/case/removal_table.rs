@@ -1,4 +1,4 @@
-//! A table of runs as a case: what a tool took off at which settings, against the law that is believed.
+//! A table of runs as a case: what a tool took off at which settings, against the nominal law.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -23,7 +23,7 @@ pub struct RemovalCase {
     pub name: String,
     /// The file.
     pub file: RemovalTableFile,
-    /// The believed law.
+    /// The nominal law.
     pub nominal: TableLaw,
     /// Rows to fit.
     pub rows: Vec<TableRow>,
@@ -87,7 +87,7 @@ impl RemovalCase {
                     line: row.line,
                     column: file.force.name.clone(),
                     value: row.force / file.force.factor,
-                    expected: "a force beyond the believed threshold, as something was taken off",
+                    expected: "a force beyond the nominal threshold, as something was taken off",
                 });
             }
         }
@@ -255,7 +255,7 @@ fn check(
     })
 }
 
-/// The believed law, its reference the mean of the rows' logarithms where the file states none.
+/// The nominal law, its reference the mean of the rows' logarithms where the file states none.
 fn law_of(file: &RemovalTableFile, rows: &[TableRow]) -> TableLaw {
     let mean = |of: fn(&TableRow) -> f64| {
         let logs: Vec<f64> = rows

@@ -17,7 +17,7 @@ use crate::workpiece::load_mesh;
 /// Size of the floor, far beyond any arm's reach, and its thickness [m].
 const FLOOR: [f64; 2] = [40.0, 1.0];
 
-/// The model of a cell, its part where it is believed to be.
+/// The model of a cell, its part at its nominal pose.
 pub(super) fn model(
     scenario: &Scenario,
     arm: &Arm,

@@ -160,7 +160,7 @@ pub enum CellError {
         /// That point in the world [m].
         point: DVec3,
     },
-    /// A part that lies farther from where it is believed to be than the slide can follow.
+    /// A part that lies farther from its nominal pose than the slide can follow.
     #[error("{}: `workpiece.misplacement` moves the part by {} mm and {} deg: with a working stroke of {} mm the slide would go from {:.1} to {:.1} mm of 0 to {} mm along the edge; expected a part that lies within the stroke",
         file.display(), millimetres(*shift), shown_degrees(*tilt), millimetres(*working_stroke), 1e3 * from, 1e3 * to, millimetres(*full_stroke))]
     ShiftBeyondStroke {

@@ -43,7 +43,7 @@ pub struct Cell {
     pub setup: Setup,
     /// How finely a step of the simulation is cut.
     pub resolution: Resolution,
-    /// The middle of the followed edge, where the part is believed.
+    /// The middle of the followed edge, with the part at its nominal pose.
     pub middle: EdgeStation,
     /// Controller of the regulator's pressure, as it is at the start.
     pub controller: ForceController,

@@ -1,4 +1,4 @@
-//! The part in the cell: where it is believed to be, where it really is, the followed edge and the burr on it.
+//! The part in the cell: its nominal and its actual pose, the followed edge and the burr on it.
 
 use std::path::Path;
 
@@ -157,7 +157,7 @@ fn check_stretch(file: &Path, choice: &EdgeChoice, curve: &EdgeCurve) -> Result<
     }
 }
 
-/// The believed pose turned and shifted about the middle of the edge.
+/// The nominal pose turned and shifted about the middle of the edge.
 fn real_pose(workpiece: &WorkpieceScenario, edge: &EdgeCurve) -> DPose3 {
     let Misplacement { shift, tilt } = workpiece.misplacement;
     let nominal = workpiece.world_from_part;

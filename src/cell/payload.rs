@@ -9,7 +9,7 @@ use crate::arm::urdf::Arm;
 use crate::plant::Mounting;
 use crate::scenario::Scenario;
 
-/// Standard gravity, by which a force is told as a mass [m/s2].
+/// Standard gravity, by which a force is given as a mass [m/s2].
 const GRAVITY: f64 = 9.80665;
 
 /// The arm with the housing of a device on its flange, its mass without extent.

@@ -30,7 +30,7 @@ pub struct Setup {
     pub actual: Actual<PlantParameters>,
     /// Part, edge and burr.
     pub part: Part,
-    /// What must not meet, the part where it is believed to be.
+    /// What must not meet, the part at its nominal pose.
     pub collision: CollisionModel,
     /// Passes along the edge.
     pub passes: Vec<Pass>,

@@ -8,7 +8,7 @@ use crate::scenario::Scenario;
 /// Places along the edge at which that is looked at.
 const LOOKS: usize = 200;
 
-/// The slide must not reach an end of its stroke anywhere along the edge of a part that lies elsewhere than it is believed to.
+/// The slide must not reach an end of its stroke anywhere along the edge of a part that lies off its nominal pose.
 pub(super) fn check(scenario: &Scenario, part: &Part, path: &ToolPath) -> Result<(), CellError> {
     if scenario.device.locked {
         return Ok(());

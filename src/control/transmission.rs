@@ -131,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn a_loaded_link_stands_off_its_motor_by_spring_and_half_the_play() {
+    fn a_loaded_link_is_off_its_motor_by_spring_and_half_the_play() {
         for torque in [150.0, -60.0f64] {
             let expected = torque / 1e5 + 2e-3 * torque.signum();
             assert!((settled(SPRING, torque) - expected).abs() < 1e-6);

@@ -91,7 +91,7 @@ impl<'a> Archive<'a> {
     }
 
     /// A part of the search begins, for which this stretch of the budget is meant. A part that needs less ends early: the time left is then less than was
-    /// told, and never more.
+    /// shown, and never more.
     pub fn begin(&self, from: usize, to: usize) {
         let before = self.known().len();
         *self.stage() = Stage { from, to, before };

@@ -44,7 +44,7 @@ const FIRST_LOOK: f64 = 0.6;
 /// The lowest level, as a share of the front's width: at the least value itself there is no room to move.
 const LOWEST_LEVEL: f64 = 0.002;
 
-/// Does the study. The progress is told the number of designs evaluated so far and the budget, from any thread.
+/// Does the study. The progress gets the number of designs evaluated so far and the budget, from any thread.
 ///
 /// # Errors
 /// The starting design cannot be simulated, a metric is unknown, or no design keeps the limits.

@@ -10,7 +10,7 @@ use crate::physics::valve::ValvePosition;
 pub struct DeviceState {
     /// The regulator.
     pub regulator: RegulatorState,
-    /// Position that the solenoid valve is told to take.
+    /// Commanded position of the solenoid valve.
     pub valve: ValvePosition,
     /// Its spool, which takes it after the switching delay.
     pub spool: Spool,

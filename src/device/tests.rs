@@ -327,7 +327,7 @@ fn the_compressor_fills_the_reservoir_linearly_to_its_full_pressure() {
 }
 
 #[test]
-fn a_late_valve_does_what_a_prompt_one_does_that_is_told_later() {
+fn a_late_valve_does_what_a_prompt_one_does_that_is_commanded_later() {
     let run = |switching_delay: f64, commanded: std::ops::Range<i32>| {
         let device = Device::new(DeviceParameters {
             switching_delay,

@@ -43,7 +43,7 @@ pub struct Answer {
     /// Whether it predicts the recordings, each by the others, to near the noise of the sensors; none in files that are older.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub explained: Option<Extent>,
-    /// Physics that the believed model lacks; nothing where nothing is missing.
+    /// Physics that the nominal model lacks; nothing where nothing is missing.
     pub effects: Vec<FoundEffect>,
     /// Where the effects act.
     pub mismatch: Vec<Mismatch>,
@@ -65,7 +65,7 @@ pub struct Answer {
 pub enum Verdict {
     /// Known physics explains the recordings.
     Explained,
-    /// The believed model does.
+    /// The nominal model does.
     NothingMissing,
     /// Physics that has no name here is at work.
     Unlisted,
@@ -104,7 +104,7 @@ pub struct FoundEffect {
     /// The law, of an effect that is written as an expression.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub law: Option<FoundLaw>,
-    /// Knowledge of physics without a name.
+    /// Knowledge of a model discrepancy.
     #[serde(flatten, default, skip_serializing_if = "Option::is_none")]
     pub unlisted: Option<Box<UnlistedReport>>,
 }
@@ -177,7 +177,7 @@ impl FoundEffect {
 pub struct Alternative {
     /// Names.
     pub effects: Vec<String>,
-    /// Formula of the term without a name among them, if it has one.
+    /// Formula of the model discrepancy among them, if it has one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub formula: Option<String>,
     /// Odds against the answer given [1].

@@ -34,7 +34,7 @@ use crate::plant::{CHANNELS, Channel, DeviceParts, PlantParameters, simulate};
 /// The fit of the answer to all recordings but one, from where that to all is.
 const LEFT_OUT: Refit<'static> = Refit::FINEST.from(Start::Here).until(Limit::of(8));
 
-/// Diagnoses a case from its recordings as prepared; `observer` is told of its progress.
+/// Diagnoses a case from its recordings as prepared; `observer` gets its progress.
 #[must_use]
 pub fn diagnose(
     case: &DiagnosisInput,

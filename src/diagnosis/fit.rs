@@ -306,7 +306,7 @@ impl Limit {
 /// Start of a fit.
 #[derive(Debug)]
 pub enum Start<'a, S: Subject = Device> {
-    /// Where it was; what is tolerated from what was believed, because a model that lacks something bends it out of shape.
+    /// Where it was; what is tolerated from its nominal value, because a model that lacks something bends it out of shape.
     Nominal,
     /// Where it was.
     Here,

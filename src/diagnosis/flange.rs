@@ -1,11 +1,11 @@
-//! A contact flange seen from outside: what its runs show that the first order believed of it leaves out.
+//! A contact flange seen from outside: what its runs show that its nominal first order leaves out.
 //!
 //! ```text
 //! F_peak = F_0 + v sqrt(k m),   k = ((F_peak - F_0)/v)^2 / m                 a mass m meets a spring k at a speed v (Johnson 1985, chapter 11)
 //! ```
 //!
 //! F_peak largest force of the impact [N], F_0 force desired before it [N]. Each run gives one number of each kind, so that their intervals come from how
-//! they differ from run to run (Student's t), with the force sampled as it was. What cannot be told without pressure and stroke is said to be so.
+//! they differ from run to run (Student's t), with the force sampled as it was. What cannot be determined without pressure and stroke is said to be so.
 
 pub mod answer;
 pub mod fit;

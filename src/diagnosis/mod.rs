@@ -1,4 +1,4 @@
-//! Finds what physics recordings contain that the believed model leaves out.
+//! Finds what physics recordings contain that the nominal model leaves out.
 
 pub mod answer;
 pub mod data_fault;

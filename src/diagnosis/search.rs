@@ -1,4 +1,4 @@
-//! Which effects explain what the believed model leaves.
+//! Which effects explain what the nominal model leaves.
 
 pub mod detectable;
 pub(super) mod finish;
@@ -30,7 +30,7 @@ use rayon::prelude::*;
 pub struct Search<'a> {
     /// The recordings.
     pub evidence: &'a Evidence,
-    /// The rig as believed.
+    /// The nominal rig.
     pub nominal: PlantParameters,
     /// Tolerated quantities.
     pub tolerated: Vec<Free>,
@@ -50,7 +50,7 @@ pub struct Search<'a> {
     pub settings: Settings,
 }
 
-/// An effect that a link of its own has shown, such as a servo's in commands and encoders: what it found is what is believed of its numbers.
+/// An effect that a link of its own has shown, such as a servo's in commands and encoders: what it found is nominal for its numbers.
 #[derive(Debug, Clone)]
 pub struct EstablishedEffect {
     /// The effect.
@@ -71,7 +71,7 @@ pub struct RoughFit {
 }
 
 impl Search<'_> {
-    /// The believed model within its tolerances, roughly.
+    /// The nominal model within its tolerances, roughly.
     pub fn baseline(&self) -> Hypothesis {
         let effects = self.shown.iter().map(|shown| shown.effect).collect();
         let own = self.shown.iter().flat_map(|shown| &shown.numbers);
@@ -260,7 +260,7 @@ impl Search<'_> {
         hypothesis.effects.len() - self.shown.len()
     }
 
-    /// What was fitted roughly, beside the best explanation and the rough cost of the believed model and of noise.
+    /// What was fitted roughly, beside the best explanation and the rough cost of the nominal model and of noise.
     fn tried_roughly(
         &self,
         full: &[Hypothesis],

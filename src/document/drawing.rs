@@ -71,7 +71,7 @@ pub struct DrawnLine {
     pub values: Vec<f32>,
     /// Direction away from the bodies.
     pub outward: [f64; 3],
-    /// What is told of it: names and values, the first of them under the pointer too.
+    /// Its facts: names and values, the first of them under the pointer too.
     pub facts: Vec<[String; 2]>,
     /// A remark; may be empty.
     pub remark: String,

@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn a_positive_lean_is_drawn_and_told_towards_the_left_face() {
+    fn a_positive_lean_is_drawn_and_described_towards_the_left_face() {
         let drawn = cross_section(&tilted(f64::to_radians(20.0)));
         assert!(
             drawn.contains("lean_deg = 20.0, towards the left face"),

@@ -93,7 +93,7 @@ fn an_edge_behind_the_part_is_drawn_pale() {
 }
 
 #[test]
-fn the_force_is_told_at_the_moment_that_is_shown() {
+fn the_force_is_labelled_at_the_moment_that_is_shown() {
     let scene = plate();
     assert!(cell(&scene, 0.9).contains(">50.00 N</text>"));
     assert!(!cell(&scene, 0.1).contains(" N</text>"));

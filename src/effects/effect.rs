@@ -87,7 +87,7 @@ pub enum Which {
 /// An effect.
 #[derive(Clone)]
 pub struct Effect {
-    /// Name in an answer, by which it is told from all others.
+    /// Name in an answer, which is unique.
     pub name: &'static str,
     /// Its file, whose header says what it is.
     pub text: &'static str,
@@ -97,7 +97,7 @@ pub struct Effect {
     pub subsystem: Subsystem,
     /// Its numbers, reported ones first; of the one of several alike.
     pub parameters: fn(&PlantParameters, usize) -> Vec<Parameter>,
-    /// Its numbers at a size that devices and cells usually show, beside what is believed of them; all of them, in that order.
+    /// Its numbers at a size that devices and cells usually show, beside their nominal values; all of them, in that order.
     pub usual: fn(&PlantParameters, usize) -> Vec<f64>,
     /// Values to start from, one list of all parameters each.
     pub starts: fn(&Clues<'_>, usize) -> Vec<Vec<f64>>,
@@ -134,7 +134,7 @@ impl Effect {
         (self.parameters)(plant, self.index())
     }
 
-    /// Its numbers at a size that devices and cells usually show, beside what is believed of them; all of them, in that order.
+    /// Its numbers at a size that devices and cells usually show, beside their nominal values; all of them, in that order.
     pub fn usual(&self, plant: &PlantParameters) -> Vec<f64> {
         (self.usual)(plant, self.index())
     }

@@ -1,11 +1,11 @@
-//! The header comment of an effect's file, read for people: the one place where its physics is told.
+//! The header comment of an effect's file, read for people: the one place where its physics is described.
 //!
 //! ```text
 //! first paragraph    what it is in a sentence, then where it comes from
 //! fenced lines       equation
 //! next paragraph     legend, and on a line of its own `Source:`
 //! `Signature:`       what it looks like in the signals
-//! `Confused with:`   a line `- NAME: how the two are told apart.` each
+//! `Confused with:`   a line `- NAME: how the two are distinguished.` each
 //! ```
 
 use std::collections::BTreeMap;
@@ -31,7 +31,7 @@ pub struct Header {
     pub source: String,
     /// Its look in the signals.
     pub signature: String,
-    /// Effects with which it is confused, and how they are told apart.
+    /// Effects with which it is confused, and how they are distinguished.
     pub rivals: Vec<(String, String)>,
 }
 
@@ -60,9 +60,7 @@ pub fn meaning(effect: &str) -> &'static str {
     let number = NUMBERS_OFF.iter().find(|number| number.name == effect);
     let name = number.map_or_else(|| vocabulary(effect).0, |number| number.vocabulary().0);
     let header = HEADERS.get(name);
-    header.map_or("physics beyond the believed model", |header| {
-        &header.meaning
-    })
+    header.map_or("physics beyond the nominal model", |header| &header.meaning)
 }
 
 impl Effect {

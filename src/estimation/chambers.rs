@@ -26,7 +26,7 @@ const LEAST_DIFFERENCE: f64 = 1.0;
 /// Half width over which the flow's slope is taken [Pa]: what the filter knows the pressure difference to, so that no kink decides.
 const SLOPE_HALF_WIDTH: f64 = 50.0;
 
-/// Motion and regulator at the start of a period, as believed.
+/// Motion and regulator at the start of a period, nominal.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Drive {
     pub(super) stroke: f64,

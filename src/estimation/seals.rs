@@ -21,14 +21,14 @@ pub(super) struct Deflection {
     pub(super) by_presliding: f64,
 }
 
-/// Trajectory of the motion, told from the believed stroke.
+/// Trajectory of the motion, determined from the nominal stroke.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Way {
     /// On in the same direction, or turned: carry the turning point along.
     On,
     /// Back for the first time since it went on.
     Halted,
-    /// Still back by less than can be told from noise.
+    /// Still back by less than can be distinguished from noise.
     Undecided,
 }
 

@@ -23,7 +23,7 @@ pub const SAMPLED: f64 = 1e-4;
 /// Contact force from which the tool is said to touch [N].
 const TOUCHES: f64 = 2.0;
 
-/// What the arm and the flange are told to do.
+/// Commands of the arm and the flange.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FlangeCourse {
     /// Time of the first value [s].

@@ -131,7 +131,7 @@ mod tests {
     use rand::{Rng, SeedableRng};
 
     #[test]
-    fn a_reader_is_told_from_its_noise_and_undone() {
+    fn a_reader_is_identified_by_its_noise_and_undone() {
         let planted = Reader {
             period: 2e-3,
             gain: 1.43,

@@ -42,9 +42,9 @@ pub struct Diagnosed {
     pub verdict: String,
     /// Whether it took a search.
     pub searched: bool,
-    /// What is at work, and its numbers that are told.
+    /// What is at work, and its reported numbers.
     pub effects: Vec<(String, Vec<NumberFound>)>,
-    /// What is believed within a tolerance, as the recording has it.
+    /// Nominal values with a tolerance, as the recording has it.
     pub tolerated: Vec<NumberFound>,
     /// What the next recording begins with.
     pub state: Vec<Started>,

@@ -143,7 +143,7 @@ pub struct DeviceFound {
     pub effects: Vec<EffectFound>,
     /// Effects that single recordings showed, and in how many: no alarm.
     pub single: Vec<(String, usize)>,
-    /// Numbers that changed, of effects and of what is believed within a tolerance.
+    /// Numbers that changed, of effects and of nominal values with a tolerance.
     pub changed: Vec<NumberChanged>,
     /// All numbers over the days.
     pub series: Vec<NumberSeries>,
@@ -180,7 +180,7 @@ pub struct Since {
 /// A number that changed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NumberChanged {
-    /// Its effect; empty where it is one of what is believed.
+    /// Its effect; empty where it is a nominal value.
     pub effect: String,
     /// Its name, with its unit.
     pub number: String,
@@ -197,7 +197,7 @@ pub struct NumberChanged {
 /// A number over the days.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NumberSeries {
-    /// Its effect; empty where it is one of what is believed.
+    /// Its effect; empty where it is a nominal value.
     pub effect: String,
     /// Its name, with its unit.
     pub number: String,
@@ -345,7 +345,7 @@ pub fn words(effect: &str) -> String {
     effect.replace('_', " ")
 }
 
-/// Numbers of a device over the days: the first ones of its effects, and all that is believed within a tolerance.
+/// Numbers of a device over the days: the first ones of its effects, and all nominal values with a tolerance.
 fn all_series(recordings: &[&Recording]) -> Vec<NumberSeries> {
     let mut found: BTreeMap<(String, String), (Vec<f64>, Vec<f64>)> = BTreeMap::new();
     for recording in recordings {

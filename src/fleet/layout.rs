@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn devices_and_dates_are_read_and_what_is_neither_is_told() {
+    fn devices_and_dates_are_read_and_what_is_neither_is_reported() {
         let folder = tempfile::tempdir().unwrap();
         let write = |path: &str| {
             let path = folder.path().join(path);

@@ -9,7 +9,7 @@ use super::map::{Clock, ImportMap};
 use super::rows::Remark;
 use crate::recording::{RecordedChannel, Recording};
 
-/// A recording with what its logs had to be told of.
+/// A recording with the messages on its logs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Imported {
     /// The recording, at the first log's times.

@@ -1,4 +1,4 @@
-//! Signs that make a channel's unit or reading doubtful: what is seen, and what it looks like. Told to the user, who decides; nothing is changed.
+//! Signs that make a channel's unit or reading doubtful: what is seen, and what it looks like. Reported to the user, who decides; nothing is changed.
 //!
 //! Each rule says why. None refuses: a strange recording may be right.
 
@@ -403,7 +403,7 @@ mod tests {
     }
 
     #[test]
-    fn a_columns_name_that_says_another_unit_is_believed_no_less_than_the_map() {
+    fn a_columns_name_that_says_another_unit_counts_as_much_as_the_map() {
         let named = |column: &str, unit: &str| {
             let mut channel = ChannelMap::unconverted("force", unit);
             channel.column = Column::Name(column.to_owned());
@@ -463,7 +463,7 @@ mod tests {
     }
 
     #[test]
-    fn gauge_and_absolute_are_told_apart_by_where_they_rest() {
+    fn gauge_and_absolute_are_distinguished_by_where_they_rest() {
         let stroke = |t: f64| 3.0 * (t - 20.0).clamp(0.0, 1.0);
         let mut channel = ChannelMap::unconverted("pressure_gauge", "bar");
         let said = doubts(&channel, |t| 1.013 + stroke(t) + 0.001 * rough(t));

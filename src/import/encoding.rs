@@ -1,4 +1,4 @@
-//! The encoding of a text log: as the map says, or as its bytes tell. What cannot be told is refused: a guess would garble names and units.
+//! The encoding of a text log: as the map says, or as its bytes tell. What cannot be determined is refused: a guess would garble names and units.
 //!
 //! A byte order mark tells, then zero bytes at every other place (UTF-16 without a mark), then valid UTF-8. What is left is Windows-1252 if all that it would
 //! then hold beyond ASCII is what western European logs hold: their letters within words, and the signs of units.
@@ -208,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn each_encoding_is_told_by_its_bytes() {
+    fn each_encoding_is_detected_by_its_bytes() {
         let text = || TEXT.to_owned();
         let marked = |bytes: Vec<u8>, mark: &[u8]| [mark, &bytes].concat();
         let little = || utf_16(TEXT, u16::to_le_bytes);
@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_told_is_refused_with_what_was_seen() {
+    fn an_unclear_encoding_is_refused_with_what_was_seen() {
         // Code page 850: a u umlaut is 0x81, an a umlaut 0x84, a degree 0xF8.
         for (bytes, says) in [
             (&b"t;Dr\x81cke\n0;1\n"[..], "line 1 holds the byte 0x81"),

@@ -29,8 +29,8 @@ pub enum ImportError {
         /// The remedy.
         advice: String,
     },
-    /// A text whose encoding cannot be told, or is not the map's.
-    #[error("the encoding of {} cannot be told: {seen}; `encoding` in the map's [[file]] names it: \
+    /// A text whose encoding cannot be determined, or is not the map's.
+    #[error("the encoding of {} cannot be determined: {seen}; `encoding` in the map's [[file]] names it: \
         encoding = \"windows-1252\", \"utf-8\", \"utf-16le\", \"windows-1251\", \"ibm866\" or another", file.display())]
     Encoding {
         /// The file.

@@ -90,7 +90,7 @@ pub(super) fn finding(series: &Series, channel: &ChannelMap) -> Finding {
         .collect();
     gaps.sort_by(|a, b| (b[1] - b[0]).total_cmp(&(a[1] - a[0])));
     let (noise, quantum) = (noise(&there), quantum(&there));
-    // What is commanded has no noise, and stays where it is told.
+    // A command has no noise, and stays at its value.
     let cut_off_at = match noise {
         Some(noise) if noise > 0.0 => cut_off_at(&there, range),
         _ => Vec::new(),

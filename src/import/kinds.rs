@@ -24,7 +24,7 @@ const WORDS: [(&str, &[Unit]); 17] = [
     ("current", &[Unit::Ampere]),
 ];
 
-/// Units that a quantity may have; none where its name tells nothing.
+/// Units that a quantity may have; none where its name implies none.
 #[must_use]
 pub fn of_quantity(quantity: &str) -> Option<Vec<Unit>> {
     if let Some(signal) = schema::definition(quantity) {

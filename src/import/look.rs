@@ -1,4 +1,4 @@
-//! A map drafted by looking at logs: how they are written, what their columns are and in what units, each with how sure it is and why. What cannot be told
+//! A map drafted by looking at logs: how they are written, what their columns are and in what units, each with how sure it is and why. What cannot be determined
 //! is asked for in a comment.
 //!
 //! ```text
@@ -32,7 +32,7 @@ use seen::{Cells, Looked};
 /// Drafts a map for logs. Those that are alike make a recording each; those that are not are taken to be parts of one.
 ///
 /// # Errors
-/// A log that cannot be read, whose encoding cannot be told, or whose numbers mix decimal marks.
+/// A log that cannot be read, whose encoding cannot be determined, or whose numbers mix decimal marks.
 pub fn draft(title: &str, paths: &[PathBuf]) -> Result<Draft, ImportError> {
     let mut kinds: Vec<(Looked, Vec<PathBuf>)> = Vec::new();
     for path in paths {

@@ -4,7 +4,7 @@
 //! header of 128 bytes, then elements: kind [4 bytes], length [4 bytes], content; padded to 8 bytes unless it is compressed
 //! ```
 //!
-//! (MathWorks, MAT-File Format). The elements are told apart here, so that a file that is cut off is known as such and an array that cannot be
+//! (MathWorks, MAT-File Format). The elements are distinguished here, so that a file that is cut off is known as such and an array that cannot be
 //! read does not take the others with it; `matfile` reads each.
 
 use std::io::Read;

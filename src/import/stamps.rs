@@ -5,7 +5,7 @@
 //! TOD#14:02:03.123   DT#2024-03-05-14:02:03   T#1m2s   0 days 00:00:01.25   1.02:03:04.5   PT1M2.5S
 //! ```
 //!
-//! The order of day and month is told by all the dates of a log together, by a point between them, or by the map. Stamps without a zone are read as UTC.
+//! The order of day and month is determined by all the dates of a log together, by a point between them, or by the map. Stamps without a zone are read as UTC.
 //! Of a time of two numbers the last is seconds where it has decimals (as spreadsheets show `mm:ss.0`); of others the map says what they are.
 
 use chrono::NaiveDate;
@@ -120,7 +120,7 @@ struct Groups {
 /// Times of stamps [ns]: since 1970 where they have dates, since midnight or a start where they have none.
 ///
 /// # Errors
-/// The first that cannot be read, or whose day and month cannot be told apart.
+/// The first that cannot be read, or whose day and month cannot be distinguished.
 pub(super) fn nanoseconds(stamps: &[String], reading: Reading) -> Result<Vec<i64>, Unread> {
     let mut parsed = Vec::with_capacity(stamps.len());
     for (index, text) in stamps.iter().enumerate() {

@@ -21,8 +21,8 @@ fn tidy(schema: &mut Value) {
     match schema {
         Value::Object(object) => {
             object.remove("format");
-            let told = |default: &Value| default.is_number() || default.is_string();
-            if !object.get("default").is_some_and(told) {
+            let stated = |default: &Value| default.is_number() || default.is_string();
+            if !object.get("default").is_some_and(stated) {
                 object.remove("default");
             }
             if let Some(Value::Array(types)) = object.get_mut("type") {

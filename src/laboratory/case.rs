@@ -36,7 +36,7 @@ pub struct Recipe {
 /// A case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LaboratoryCase {
-    /// The device as believed.
+    /// The nominal device.
     pub nominal: NominalRig,
     /// Programmes carried out; the last one is to be predicted.
     pub programmes: Vec<Programme>,
@@ -49,7 +49,7 @@ pub struct LaboratoryCase {
 /// A device recorded once, as of many times.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Session {
-    /// The device as believed: that of the type.
+    /// The nominal device: that of the type.
     pub nominal: NominalRig,
     /// Programmes carried out.
     pub programmes: Vec<Programme>,
@@ -64,7 +64,7 @@ struct Pair {
 }
 
 impl Pair {
-    /// Numbers of the rig that are off stand in the real one; without the effect they are what is believed.
+    /// Numbers of the rig that are off stand in the real one; without the effect they are nominal.
     fn new(nominal: &LaboratoryRig, drawn: LaboratoryRig, concealed: &Concealed) -> Self {
         type Place = fn(&mut LaboratoryRig) -> &mut f64;
         let (mut bare, mut real) = (drawn.clone(), drawn);
@@ -238,7 +238,7 @@ impl Recipe {
         setting.run(setting.programmes.len() - 1)
     }
 
-    /// The device as believed.
+    /// The nominal device.
     pub(super) fn rig(&self) -> LaboratoryRig {
         NominalRig::draw(self.seed).rig
     }

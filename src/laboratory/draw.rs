@@ -1,4 +1,4 @@
-//! Devices drawn at random: what their owner believes, and what they really are.
+//! Devices drawn at random: their nominal values, and what they really are.
 
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -7,7 +7,7 @@ use super::programme::{Programme, Surface, Wave};
 use super::rig::{AIR, LaboratoryRig};
 use super::sensors::{as_printed, between};
 
-/// The numbers that are believed within a tolerance, and how wide it is at its usual.
+/// The numbers that have a tolerance, and how wide it is at its usual.
 pub const TOLERANCES: [(&str, f64); 8] = [
     ("dead_volume_m3", 0.1),
     ("moving_mass_kg", 0.01),
@@ -19,7 +19,7 @@ pub const TOLERANCES: [(&str, f64); 8] = [
     ("damping_n_s_per_m", 0.3),
 ];
 
-/// A device as believed, with its tolerances.
+/// A nominal device, with its tolerances.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NominalRig {
     /// The numbers.

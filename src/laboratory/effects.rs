@@ -1,6 +1,6 @@
 //! The effects that the laboratory can conceal, each at a share of the largest that is plausible.
 //!
-//! The share is that of the departure from the believed model: of a gain or an orifice its departure from the nominal one. Where a large number means
+//! The share is that of the departure from the nominal model: of a gain or an orifice its departure from the nominal one. Where a large number means
 //! little of an effect (a wall that conducts well, a large reservoir), it is the largest effect's number over the share. The least share of a sweep
 //! is that at which all that an effect moves is lost in the noise (`sizes`).
 
@@ -27,7 +27,7 @@ pub struct LabEffect {
 pub(super) struct Scene<'a> {
     /// Random numbers.
     pub rng: &'a mut ChaCha8Rng,
-    /// The device as believed.
+    /// The nominal device.
     pub nominal: &'a LaboratoryRig,
     /// Largest force without the effect [N].
     pub peak_force: f64,
@@ -248,7 +248,7 @@ pub static EFFECTS: [LabEffect; 34] = [
         s.concealed.contact_stiffness = Some(stiffness);
         vec![("stiffness_n_per_m", stiffness)]
     }),
-    // From one that at 100 N is as soft as a fifth of the believed stiffness; none is lost, for it takes the place of another law.
+    // From one that at 100 N is as soft as a fifth of the nominal stiffness; none is lost, for it takes the place of another law.
     listed("hertzian_contact", "contact", |s| {
         const AT: f64 = 100.0;
         let share = s.by_power(0.2, -0.3);

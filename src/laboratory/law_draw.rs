@@ -396,7 +396,7 @@ fn works(real: &[LaboratoryTrajectory], bare: &[LaboratoryTrajectory]) -> bool {
     })
 }
 
-/// Whether what acts is neither a listed effect's nor as well told by another variable.
+/// Whether what acts is neither a listed effect's nor as well described by another variable.
 fn is_its_own(law: &Law, real: &[LaboratoryTrajectory], shows: f64) -> bool {
     let mut rows: Vec<(f64, [f64; 10])> = Vec::new();
     let touched = [Place::Surface, Place::Stiffness].contains(&law.place);

@@ -57,7 +57,7 @@ impl Programme {
         held(&self.set_pressures, time).unwrap_or(0.0)
     }
 
-    /// Whether the valve is told to extend at a time.
+    /// Whether the valve is commanded to extend at a time.
     pub fn extends(&self, time: f64) -> bool {
         held(&self.valve, time).unwrap_or(true)
     }

@@ -18,7 +18,7 @@ pub struct SealedCase {
     pub noise: BTreeMap<String, f64>,
     /// Where it shows.
     pub mismatch: Vec<SealedInterval>,
-    /// The believed numbers as they really are.
+    /// The nominal numbers as they really are.
     #[serde(default)]
     pub true_parameters: BTreeMap<String, f64>,
     /// Visibility of the effects beside all that is tolerated, in standard deviations [1]; 0 where it is not known.

@@ -97,7 +97,7 @@ fn commands(
     }
     let mut valve = vec![(0.0, true)];
     for (time, extends) in &programme.valve {
-        // A valve that is told to stay has nothing to be late with.
+        // A valve whose command does not change has nothing to be late with.
         let late = if *time > 0.0 {
             concealed.switching_delay
         } else {

@@ -36,7 +36,7 @@ pub(super) struct Eye {
 }
 
 impl Eye {
-    /// Of a device, with what is concealed in it beside, whose tolerances are relative to what is believed of it.
+    /// Of a device, with what is concealed in it beside, whose tolerances are relative to its nominal values.
     pub fn new(
         bare: &LaboratoryRig,
         beside: &Concealed,

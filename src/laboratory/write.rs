@@ -130,7 +130,7 @@ fn rig_text(nominal: &NominalRig, fit: &[&str], predict: &str) -> String {
     let noise = CHANNELS.into_iter().zip(rig.noise.map(plain));
     let quoted: Vec<String> = fit.iter().map(|name| format!("\"{name}.csv\"")).collect();
     let mut text = String::from(
-        "# The device as its owner believes it to be. SI units; tolerances are relative.\nschema = 2\n",
+        "# The device by its nominal values. SI units; tolerances are relative.\nschema = 2\n",
     );
     let rest = [
         (
@@ -157,7 +157,7 @@ fn rig_text(nominal: &NominalRig, fit: &[&str], predict: &str) -> String {
     text
 }
 
-/// What is believed of device and contact.
+/// Nominal values of device and contact.
 fn device_keys(nominal: &NominalRig) -> [Keys<'static>; 6] {
     let rig = &nominal.rig;
     let [volume, mass, gain, lag, supply, exhaust, stiffness, damping] = nominal.tolerances;

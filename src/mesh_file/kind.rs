@@ -224,7 +224,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn formats_are_told_by_their_first_bytes_then_by_their_names() {
+    fn formats_are_detected_by_their_first_bytes_then_by_their_names() {
         let step = b"ISO-10303-21;\nHEADER;\n".as_slice();
         let iges = format!("{:72}S      1\n", "a part");
         for (name, bytes, expected) in [

@@ -426,7 +426,7 @@ mod tests {
     }
 
     #[test]
-    fn crossed_sides_are_refused_and_bent_faces_told() {
+    fn crossed_sides_are_refused_and_bent_faces_reported() {
         let crossed = points(&[[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 3.0]]);
         assert_eq!(split(&crossed, &[0, 1, 2, 3], &[]), None);
         let mut bent = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.2), DVec3::Y];

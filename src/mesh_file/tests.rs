@@ -97,7 +97,7 @@ fn stl(head: &str, facet: &str, tail: &str) -> String {
 const FACET: &str = "facet normal 0 0 0\nouter loop\n";
 
 #[test]
-fn text_stl_is_read_whatever_stands_around_it() {
+fn text_stl_is_read_whatever_is_around_it() {
     let whole = |text: &str| check(&parsed("a.stl", text), 8.0, [0.0; 3], SIZE);
     let long = format!("solid {}\n", "x".repeat(5000));
     for head in [
@@ -178,7 +178,7 @@ fn binary(header: &[u8], count: u32, extra: &[u8]) -> Vec<u8> {
 }
 
 #[test]
-fn binary_stl_is_told_by_its_size_and_counts() {
+fn binary_stl_is_detected_by_its_size_and_counts() {
     let whole = |bytes: &[u8]| {
         let file = read_as("a.stl", bytes).unwrap();
         check(&file, 8.0, [0.0; 3], SIZE);
@@ -263,7 +263,7 @@ fn concave_obj_faces_are_split_within_their_outline() {
 }
 
 #[test]
-fn bent_faces_are_told_and_strongly_bent_ones_leave_the_solid_open() {
+fn bent_faces_are_reported_and_strongly_bent_ones_leave_the_solid_open() {
     let bent = obj("f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
     let slightly = parsed("a.obj", &bent.replace("v 4 2 1 ", "v 4 2 1.2 "));
     assert!(

@@ -134,7 +134,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_edge_is_judged_between_its_ends_by_leg_and_burr() {
+    fn an_edge_is_checked_between_its_ends_by_leg_and_burr() {
         let count = 100;
         let mut profile = EdgeProfile {
             place: (0..count).map(|i| 1e-3 * f64::from(i)).collect(),
@@ -184,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn an_edge_that_is_all_ends_is_judged_by_them() {
+    fn an_edge_that_is_all_ends_is_checked_by_them() {
         let profile = EdgeProfile {
             place: vec![0.0, 1e-3, 2e-3, 3e-3],
             burr_before: vec![0.0; 4],

@@ -196,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tool_that_stands_still_has_no_shares_of_length() {
+    fn a_tool_at_rest_has_no_shares_of_length() {
         let mut builder = Builder::nominal();
         builder.path_with(|_| 0.5);
         let summary = measured(&builder);

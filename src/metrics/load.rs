@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn a_drive_at_its_limit_is_told_with_its_time() {
+    fn a_drive_at_its_limit_is_reported_with_its_time() {
         let mut builder = Builder::nominal();
         let summary = summarise(&builder.build(), &limits()).unwrap();
         assert_eq!(summary.drives_saturated_s, Some(0.0));

@@ -16,7 +16,7 @@ use super::torques;
 use crate::arm::chain::MAX_JOINTS;
 use crate::collision::JointMotion;
 
-/// Ways, by roll and posture, that are planned in full before a collision is told.
+/// Ways, by roll and posture, that are planned in full before a collision is reported.
 const WAYS: usize = 4;
 /// Interval at which speeds and torques are checked [s].
 const INTERVAL: f64 = 4e-3;
@@ -61,7 +61,7 @@ impl Plan {
         Ok(outlines.remove(0))
     }
 
-    /// Plans the job and checks it against the arm's limits and what stands about.
+    /// Plans the job and checks it against the arm's limits and the obstacles.
     ///
     /// # Errors
     /// The waypoint that cannot be passed, the axis and its limit, or the bodies that meet.
@@ -230,7 +230,7 @@ fn drives(request: &PlanRequest, plan: &Plan, time: f64) -> Result<(), PlanError
     Ok(())
 }
 
-/// An obstacle at a time, told by its waypoint.
+/// An obstacle at a time, reported by its waypoint.
 fn at_time(plan: &Plan, time: f64, obstacle: Obstacle) -> PlanError {
     let leg = plan.leg_at(time);
     let along = leg.profile.at(time - leg.start_time).position;
@@ -248,7 +248,7 @@ fn along_leg(plan: &Plan, leg: &Leg, along: f64, obstacle: Obstacle) -> PlanErro
     waypoint_error(path, leg.phase, index, count, place, obstacle)
 }
 
-/// The axis that is most too fast in the leg in which one is, from a time on: the speed that is told is the one that must come down.
+/// The axis that is most too fast in the leg in which one is, from a time on: the speed that is reported is the one that must come down.
 fn too_fast(request: &PlanRequest, plan: &Plan, from: f64) -> PlanError {
     let leg = plan.leg_at(from);
     let end = leg.start_time + leg.duration;

@@ -503,7 +503,7 @@ pub struct Outline {
     pub comfort: f64,
 }
 
-/// Where a way through poses ended; why is found out only of the one that is told.
+/// Where a way through poses ended; why is found out only of the one that is reported.
 #[derive(Debug, Clone)]
 pub enum Stop {
     /// At an obstacle.

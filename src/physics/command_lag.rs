@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 pub struct CommandLag {
     rate: f64,
     command: f64,
-    /// Angle that the servo is told [rad].
+    /// Commanded angle of the servo [rad].
     pub position: f64,
     /// Its rate [rad/s].
     pub velocity: f64,

@@ -13,7 +13,7 @@
 //! slopes of both: the flow has no kink and never falls as the pressure difference grows.
 //!
 //! Instead of a tube's law a line can have a constant resistance R_h = (p_in - p_h) / m_dot [Pa s/kg]: one that stands for fittings, or for an
-//! effect to be told apart. Such a line can be distributed (`super::line_chain`): resistance and volume in segments, one behind the other; or spread evenly,
+//! effect to be distinguished. Such a line can be distributed (`super::line_chain`): resistance and volume in segments, one behind the other; or spread evenly,
 //! with half a segment's volume at either end, of which the first is the regulator's outlet: its error falls with the square of their number.
 //! Leaves out: roughness (a plastic hose is smooth); the losses at both ends and the air's acceleration, together 1.5 + 2 ln(p_in/p_h) beside f l/d, as
 //! much as 60 to 100 diameters of hose, and with them choking; the wave's delay of l over the speed of sound, 3 ms/m.

@@ -1,4 +1,4 @@
-//! The 5/2 valve's spool, which goes over some time after its solenoid is told to.
+//! The 5/2 valve's spool, which goes over some time after the command of its solenoid.
 //!
 //! ```text
 //! position(t) = command(t - theta)
@@ -43,7 +43,7 @@ impl Spool {
         self.position.unwrap_or(command)
     }
 
-    /// Time until it next goes over [s]; infinite if it is where it was told to be.
+    /// Time until it next goes over [s]; infinite if it is where it was commanded.
     pub fn remaining(&self) -> f64 {
         let next = self.pending.front();
         next.map_or(f64::INFINITY, |(arrival, _)| arrival - self.time)

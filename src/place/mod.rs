@@ -89,7 +89,7 @@ pub struct TriedPlace {
     pub outcome: Result<Possible, Hindrance>,
 }
 
-/// Tries all positions of a grid, row by row of y; `done` is told of each as it is finished.
+/// Tries all positions of a grid, row by row of y; `done` gets each as it is finished.
 pub fn tried_places(setup: &Setup, grid: &PlaceGrid, done: &(dyn Fn() + Sync)) -> Vec<TriedPlace> {
     let positions: Vec<DVec3> = (grid.y.iter())
         .flat_map(|&y| grid.x.iter().map(move |&x| DVec3::new(x, y, grid.z)))

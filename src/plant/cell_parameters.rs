@@ -1,4 +1,4 @@
-//! Properties of a cell's arm and part: springs in the joints, encoders that are off, a servo that lags, a part that is not where it is believed.
+//! Properties of a cell's arm and part: springs in the joints, encoders that are off, a servo that lags, a part off its nominal pose.
 
 use super::sharp_edge::EdgeStation;
 use crate::physics::joint_spring::JointSpring;

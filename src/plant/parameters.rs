@@ -28,7 +28,7 @@ pub struct PlantParameters {
     pub cell: CellParameters,
     /// Errors of the sensors.
     pub sensors: SensorErrors,
-    /// A term without a name.
+    /// A model discrepancy.
     pub latent: Option<Latent>,
     /// Laws of a user's own.
     pub own: Vec<OwnLaw>,
@@ -64,7 +64,7 @@ impl PlantParameters {
             && self.moving_laws().eq(other.moving_laws())
     }
 
-    /// The term without a name, if it is not of a reading alone.
+    /// The model discrepancy, if it is not of a reading alone.
     fn moving_latent(&self) -> Option<&Latent> {
         self.latent
             .as_ref()

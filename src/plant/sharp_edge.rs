@@ -142,7 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_the_normals_of_the_faces_the_ball_stands_on_a_face() {
+    fn beyond_the_normals_of_the_faces_the_ball_rests_on_a_face() {
         let touch = edge().touch(DVec3::new(0.03, 2e-3, 4e-3), 0.03);
         assert_eq!(touch.normal, DVec3::Z);
         assert!((touch.distance - 4e-3).abs() < 1e-15);

@@ -1,4 +1,4 @@
-//! Terms at the ports of a rig beside its device, contact and sensors: a term without a name, and laws of a user's own.
+//! Terms at the ports of a rig beside its device, contact and sensors: a model discrepancy, and laws of a user's own.
 
 use std::borrow::Cow;
 

@@ -39,13 +39,13 @@ pub struct LawOutcome {
     pub beside: Option<String>,
     /// Visibility of all that is concealed, in standard deviations [1].
     pub shows: f64,
-    /// What was answered without a name: subsystem, variables, formula.
+    /// The model discrepancy that was answered: subsystem, variables, formula.
     pub answers: Vec<LawAnswer>,
     /// The score.
     pub score: CaseScore,
 }
 
-/// An answer without a name.
+/// An answer with a model discrepancy.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LawAnswer {
     /// Subsystem.
@@ -192,7 +192,7 @@ fn attempt(
     })
 }
 
-/// What an answer says without a name.
+/// What an answer says of a model discrepancy.
 fn unlisted(answer: &Answer) -> Vec<LawAnswer> {
     let found = answer
         .effects

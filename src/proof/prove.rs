@@ -19,7 +19,7 @@ pub type Diagnose<'a> = dyn Fn(&Path, &Path) -> Result<Answer, String> + Sync + 
 const PREDICTION: &str = "prediction.csv";
 
 /// Diagnoses the cases below `cases`, all or those named, into folders below `out`, `jobs` at a time; then scores them by what is sealed in `sealed`.
-/// `told` is how many are done, of how many.
+/// `progress` gets how many are done, of how many.
 ///
 /// # Errors
 /// There are no such cases, or a sealed file cannot be read.

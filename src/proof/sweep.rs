@@ -119,7 +119,7 @@ impl Task {
     }
 }
 
-/// Does what a plan asks for and is not done yet; `say` is told of each case: how many are done, of how many, and what was answered. Outcomes stand in `out`/outcomes, one file each.
+/// Does what a plan asks for and is not done yet; `say` gets for each case how many are done, of how many, and what was answered. Outcomes stand in `out`/outcomes, one file each.
 ///
 /// # Errors
 /// An effect that there is not, outcomes of another sweep in `out`, a file that cannot be written.

@@ -170,7 +170,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_is_not_told_as_many() {
+    fn one_is_not_counted_as_many() {
         let counts = [0, 1, 2].map(|count| counted(count, "case"));
         assert_eq!(counts, ["0 cases", "1 case", "2 cases"]);
     }

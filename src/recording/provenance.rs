@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn content_is_what_stands_in_the_files_and_not_their_names() {
+    fn content_is_what_is_in_the_files_and_not_their_names() {
         let folder = tempfile::tempdir().unwrap();
         let content = |name: &str, text: &str, seed: u64| {
             let path = folder.path().join(name);

@@ -88,7 +88,7 @@ signals! {
     CHAMBER_1_PRESSURE = "chamber_1_pressure", Pascal, Some(Pressure), "chamber 1", "Absolute pressure in the chamber that extends the slide.";
     CHAMBER_2_PRESSURE = "chamber_2_pressure", Pascal, Some(Pressure), "chamber 2", "Absolute pressure in the chamber that retracts the slide.";
     REGULATOR_PRESSURE = "regulator_pressure", Pascal, Some(Pressure), "regulator", "Absolute pressure at the regulator's outlet.";
-    SET_PRESSURE = "set_pressure", Pascal, Some(Pressure), "set", "Absolute pressure that the regulator is told to hold.";
+    SET_PRESSURE = "set_pressure", Pascal, Some(Pressure), "set", "Set pressure of the regulator, absolute.";
     CHAMBER_1_MASS = "chamber_1_mass", Kilogram, None, "air in chamber 1", "Mass of air in chamber 1.";
     CHAMBER_2_MASS = "chamber_2_mass", Kilogram, None, "air in chamber 2", "Mass of air in chamber 2.";
     HOSE_MASS = "hose_mass", Kilogram, None, "air in the line", "Mass of air in the line between regulator and valve.";
@@ -131,7 +131,7 @@ signals! {
     MEASURED_REGULATOR_PRESSURE = "measured_regulator_pressure", Pascal, Some(Pressure), "regulator, measured",
         "Absolute pressure at the regulator's outlet as its sensor reads it.";
     SET_PRESSURE_GAUGE = "set_pressure_gauge", Pascal, None, "set, gauge",
-        "Gauge pressure that the regulator is told to hold, as a recording of a real rig has it.";
+        "Set pressure of the regulator, gauge, as a recording of a real rig has it.";
     MEASURED_REGULATOR_PRESSURE_GAUGE = "measured_regulator_pressure_gauge", Pascal, None, "regulator, measured, gauge",
         "Gauge pressure at the regulator's outlet as its sensor reads it, as a recording of a real rig has it.";
     ESTIMATED_FORCE = "estimated_force", Newton, Some(Force), "estimated",
@@ -148,7 +148,7 @@ listed! {
     name: &'static str {
         /// Measured angle.
         Position = "position",
-        /// Angle that the servo is told to hold.
+        /// Commanded angle of the servo.
         Reference = "reference",
         /// Measured angular velocity.
         Velocity = "velocity",
@@ -175,7 +175,7 @@ impl JointSignal {
     pub const fn meaning(self) -> &'static str {
         match self {
             Self::Position => "Angle of the joint.",
-            Self::Reference => "Angle that the joint's servo is told to hold.",
+            Self::Reference => "Commanded angle of the joint's servo.",
             Self::Velocity => "Angular velocity of the joint.",
             Self::Torque => "Torque of the joint's drive, gravity feed-forward included.",
             Self::Encoder => {

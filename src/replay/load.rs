@@ -29,7 +29,7 @@ pub struct LoadedCell {
 }
 
 impl LoadedCell {
-    /// Reads the scenario of a cell, one that is run or one that was recorded, as what is believed of recordings.
+    /// Reads the scenario of a cell, one that is run or one that was recorded, as the nominal model of recordings.
     ///
     /// # Errors
     /// Those of the file, and of [`LoadedCell::new`].

@@ -22,7 +22,7 @@ pub struct AssumedValue {
     pub decides: String,
 }
 
-/// Judged values of a cell's file that works its edge; all of them are of tool and edge.
+/// Assumed values of a cell's file that works its edge; all of them are of tool and edge.
 pub(super) fn of_cell(document: &Document<'_>, tables: &[(String, Vec<Key>)]) -> Vec<AssumedValue> {
     let has = |table: &str| document.keys_in(table).next().is_some();
     if !has("removal") {
@@ -46,7 +46,7 @@ pub(super) fn of_cell(document: &Document<'_>, tables: &[(String, Vec<Key>)]) ->
     assumed
 }
 
-/// Values of a device model file that it says are judged, but for those given above it and those that switch something off.
+/// Values of a device model file that it says are assumed, but for those given above it and those that switch something off.
 pub(super) fn of_model(
     assumed: &[String],
     numbers: &BTreeMap<&'static str, f64>,
@@ -72,7 +72,7 @@ mod tests {
     use crate::keys::declaration::tables;
 
     #[test]
-    fn a_models_judged_values_count_where_something_is_on() {
+    fn a_models_assumed_values_count_where_something_is_on() {
         let assumed = ["a_n", "b_n", "c", "e", "f"].map(str::to_owned);
         let numbers = [
             ("a_n", 3.0),
@@ -87,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn keys_in_use_are_told_with_what_they_decide() {
+    fn keys_in_use_are_listed_with_what_they_decide() {
         let of = |text: &str| {
             let document = Document::new(Path::new("a.toml"), text, 2).unwrap();
             let found = of_cell(&document, &tables::<ScenarioFile>());

@@ -55,7 +55,7 @@ pub struct BenchScenario {
     pub sensing: SensingParameters,
     /// Controller of the regulator's pressure where forces are commanded.
     pub controller: ControllerScenario,
-    /// Estimator of the contact force, set up as it believes noise and device to be.
+    /// Estimator of the contact force, set up with nominal noise and device.
     pub estimator: Option<ContactForceEstimator>,
     /// Bounds that the results must keep.
     pub expect: Vec<Expectation>,

@@ -125,7 +125,7 @@ pub struct WorkpieceScenario {
     pub mesh: PathBuf,
     /// Metres per unit of the mesh file [m].
     pub mesh_scale: f64,
-    /// Where the cell believes the part to be.
+    /// Nominal pose of the part.
     pub world_from_part: DPose3,
     /// Which edge to follow.
     pub edge: EdgeChoice,

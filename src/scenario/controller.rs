@@ -107,9 +107,9 @@ pub enum ForceLaw {
         observer_time: Option<f64>,
         /// Poles of the motion's filter [rad/s].
         tracking_frequency: Option<f64>,
-        /// The seals as they are believed to be; the device's own when nothing is said.
+        /// The nominal seals; the device's own when nothing is said.
         seals: Option<SealFriction>,
-        /// Uncertainty of the believed dry friction [1].
+        /// Uncertainty of the nominal dry friction [1].
         friction_uncertainty: Option<f64>,
     },
 }
@@ -204,7 +204,7 @@ fn nominal_seals(
     let coulomb = friction.unwrap_or(own.coulomb);
     let static_force = static_friction.unwrap_or(own.static_force.max(coulomb));
     if static_force < coulomb {
-        let expected = format!("at least the sliding friction that is believed, {coulomb} N");
+        let expected = format!("at least the nominal sliding friction, {coulomb} N");
         return Err(section.refuse_si("static_friction_n", static_force, expected));
     }
     Ok(Some(SealFriction {
@@ -246,7 +246,7 @@ fn period(
     Ok(period)
 }
 
-/// Largest set pressure that a device with this command's way can be told, gauge [Pa], and what sets the limit, before the words "0 to ... bar".
+/// Largest set pressure that this way of commanding the device can give, gauge [Pa], and what sets the limit, before the words "0 to ... bar".
 pub fn attainable_set_pressure(
     device: &DeviceParameters,
     command: &CommandChain,
@@ -262,7 +262,7 @@ pub fn attainable_set_pressure(
     }
 }
 
-/// Refuses a contact force [N] for which the device would need a set pressure that it cannot be told.
+/// Refuses a contact force [N] for which the device would need a set pressure that it cannot be given.
 pub(super) fn check_force(
     section: &Section<'_>,
     force: f64,

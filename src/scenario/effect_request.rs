@@ -62,7 +62,7 @@ impl EffectRequest {
         })
     }
 
-    /// The scenario's keys, what is not given at its usual size beside what is believed, of the joint `telling` where it does not say which.
+    /// The scenario's keys, what is not given at its usual size beside the nominal values, of the most observable joint where it does not say which.
     ///
     /// # Errors
     /// A number or a joint that the effect does not have, for people.

@@ -1,4 +1,4 @@
-//! `[[effect]]` of a file, the same in a cell, a bench, a recorded cell and a rig: physics beyond what is believed, of the catalogue or as an expression.
+//! `[[effect]]` of a file, the same in a cell, a bench, a recorded cell and a rig: physics beyond the nominal model, of the catalogue or as an expression.
 //!
 //! ```text
 //! [[effect]]

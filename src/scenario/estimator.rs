@@ -1,4 +1,4 @@
-//! `[estimator]` of a bench: what the estimator believes of noise and device, checked and set up.
+//! `[estimator]` of a bench: nominal noise and device of the estimator, checked and set up.
 
 use serde::Deserialize;
 

@@ -1,4 +1,4 @@
-//! The scenario file of a recorded cell, `kind = "recorded_cell"`: arm, device, part and contact as their owner believes them to be, and the sensors of
+//! The scenario file of a recorded cell, `kind = "recorded_cell"`: arm, device, part and contact by their nominal values, and the sensors of
 //! recordings of it. It has no job: that is in the recordings' commands. The scenario of a cell that this project runs is read as such a belief, too; what is in its
 //! `[process]` is in the recordings' commands.
 
@@ -105,7 +105,8 @@ pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
     let section = |table: &str| Section::new(&document, table);
     let (device, mut nominal) = load::device(&section("device"), &file.device)?;
     if device.locked {
-        let reason = "a locked device moves nowhere, and tells nothing".to_owned();
+        let reason =
+            "a locked device does not move: its recordings carry no information".to_owned();
         return Err(section("device").misplaced("locked", reason));
     }
     let part = workpiece(&section("workpiece"), &file.workpiece)?;
@@ -162,7 +163,8 @@ fn of_scenario(
         return Err(section("contact").misplaced("runout_um", sought("a runout")));
     }
     if scenario.device.locked {
-        let reason = "a locked device moves nowhere, and tells nothing".to_owned();
+        let reason =
+            "a locked device does not move: its recordings carry no information".to_owned();
         return Err(section("device").misplaced("locked", reason));
     }
     let sensing = &scenario.sensing;

@@ -1,4 +1,4 @@
-//! The file of a removal table: which tables of runs there are, what their columns are, and which law of removal is believed. Strict SI but for speed and
+//! The file of a removal table: which tables of runs there are, what their columns are, and the nominal law of removal. Strict SI but for speed and
 //! wear, which stay in the unit of their columns.
 
 use std::path::{Path, PathBuf};
@@ -171,7 +171,7 @@ pub struct TableColumn {
     pub factor: f64,
 }
 
-/// Law that is believed, [SI] but for speed and wear.
+/// Nominal law, [SI] but for speed and wear.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NominalRemoval {
     /// Volume at the reference settings [m3]; none: to be fitted.

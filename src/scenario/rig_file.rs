@@ -1,11 +1,11 @@
-//! The rig file: a device, its contact and its sensors as their owner believes them to be, or as a diagnosis has improved them. Strict SI.
+//! The rig file: a device, its contact and its sensors by their nominal values, or as a diagnosis has improved them. Strict SI.
 //!
 //! ```text
 //! key = 5.09                                   a number
-//! key = { value = 5.09, tolerance = 0.01 }     believed to lie within 1 % of it
+//! key = { value = 5.09, tolerance = 0.01 }     lies within 1 % of it
 //! key = { value = 5.13, low = 5.1, high = 5.2 } known to lie in an interval
 //! [rig]  chain = "moved_piston"                a part of the device ([`crate::plant::Chain`]); only that part's numbers are then asked for
-//! [[effect]]                                   physics beyond the believed model (`super::effects`)
+//! [[effect]]                                   physics beyond the nominal model (`super::effects`)
 //! [shares]  force_sensor = "LC-7"              a part that other rigs have too, by its serial number ([`Shares`])
 //! [known]                                      how sure a diagnosis is of it, and what its recordings covered (`known`)
 //! [latent]                                     physics that no known effect explains (`latent`)
@@ -54,7 +54,7 @@ pub struct RigFile {
     pub path: PathBuf,
     /// Its text.
     text: String,
-    /// The rig, with the effects and the term without a name that the file holds.
+    /// The rig, with the effects and the model discrepancy that the file holds.
     pub plant: PlantParameters,
     /// Numbers that are not exactly known, in the order of the format.
     pub tolerances: Vec<Tolerance>,

@@ -273,7 +273,7 @@ mod tests {
     }
 
     #[test]
-    fn a_count_is_told_from_a_number() {
+    fn a_count_is_distinguished_from_a_number() {
         let cell = ScenarioTemplate::read(&shipped("deburred_edge")).unwrap();
         for (key, whole, expected) in [
             ("simulation.seed", 1, true),
@@ -291,7 +291,7 @@ mod tests {
 
     /// Every shipped scenario, put elsewhere, is the same scenario.
     #[test]
-    fn a_file_that_stands_elsewhere_leads_to_the_same_files() {
+    fn a_file_elsewhere_leads_to_the_same_files() {
         let folder = tempfile::tempdir().unwrap();
         let mut tried = 0;
         for entry in std::fs::read_dir(shipped("x").parent().unwrap()).unwrap() {

@@ -24,7 +24,7 @@ pub struct Board {
 pub enum BoardRole {
     /// As a sensor read it.
     Measured,
-    /// By the model as it was believed.
+    /// By the nominal model.
     Nominal,
     /// By the improved model.
     Improved,

@@ -1,4 +1,4 @@
-//! Colours of what is drawn of a recording; those of errors are told apart by people with any colour vision.
+//! Colours of what is drawn of a recording; those of errors are distinct to people with any colour vision.
 
 /// Red, green, blue and opacity, 0 to 255.
 pub type Colour = [u8; 4];

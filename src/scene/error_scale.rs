@@ -20,7 +20,7 @@ pub struct ErrorScale {
 }
 
 impl ErrorScale {
-    /// The scale on which the errors of an edge can be told apart: the next of 0.1, 0.2, 0.5, 1, 2, 5 .. % within which 95 % of the segments lie.
+    /// The scale on which the errors of an edge can be distinguished: the next of 0.1, 0.2, 0.5, 1, 2, 5 .. % within which 95 % of the segments lie.
     #[must_use]
     pub fn of(edge: &EdgePath) -> Self {
         let errors = edge.relative_force_error.iter();

@@ -20,7 +20,7 @@ use rapier3d::prelude::*;
 pub struct TrueContact {
     /// Unit normal out of the part, in the world.
     pub normal: DVec3,
-    /// Separation that the solver is told [m]: it says the force (see `contact`), and nothing of where the surfaces are.
+    /// Separation that the solver is given [m]: it says the force (see `contact`), and nothing of where the surfaces are.
     pub separation: f64,
 }
 

@@ -470,7 +470,7 @@ impl<'a> Simulation<'a> {
             }
             self.servo.hold(axis, cut);
             let offset = self.cell.setup.actual.cell.encoder_offset[axis];
-            // Told is the middle of the step.
+            // What is given is the middle of the step.
             let commanded =
                 drive_commands.position[axis] + 0.5 * dt * drive_commands.velocity[axis] - offset;
             off = off.max((commanded - angle).abs());

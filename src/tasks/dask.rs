@@ -130,7 +130,7 @@ fn last_words(from: Option<impl Read>) -> String {
     last
 }
 
-/// What the driver is told.
+/// What the driver is given.
 fn order(dask: &Dask, plan: &Path) -> serde_json::Value {
     let (workers, address) = match &dask.engine {
         Engine::DaskLocal(count) => (*count, ""),

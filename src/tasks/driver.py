@@ -57,10 +57,10 @@ def perform_carried(program, shared, plan, head, line, files, before):
             path = here.parent / "tasks" / task["after"] / name
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(content)
-        code, told = perform(program, str(here), task["id"])
+        code, message = perform(program, str(here), task["id"])
         folder = here.parent / "tasks" / task["id"]
         result = {path.name: path.read_bytes() for path in folder.iterdir()} if folder.is_dir() else {}
-        return code, told, result
+        return code, message, result
 
 
 class Work:
@@ -140,7 +140,7 @@ class Work:
 
     async def finish(self, name, future):
         try:
-            code, told, *result = await future
+            code, message, *result = await future
         except Exception as error:
             self.fail(name, f"{type(error).__name__}: {error}".splitlines()[0])
             return
@@ -156,7 +156,7 @@ class Work:
             say(done=self.done)
             self.ready.extend(self.waiting.pop(name, []))
         else:
-            self.fail(name, told.splitlines()[-1] if told else f"exit code {code}")
+            self.fail(name, message.splitlines()[-1] if message else f"exit code {code}")
 
 
 def refuse(reason):

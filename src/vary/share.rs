@@ -44,7 +44,7 @@ pub struct Share {
 }
 
 impl Share {
-    /// Whether it is told from chance: its interval lies above what the shuffled variable gets.
+    /// Whether it differs from chance: its interval lies above what the shuffled variable gets.
     #[must_use]
     pub fn is_sure(&self) -> bool {
         self.interval[0] > self.shuffled
@@ -303,7 +303,7 @@ mod tests {
         ]
     }
 
-    // Catches: 40 runs of which a variable that does nothing correlates with one that does, and is told to drive the number by a fifth.
+    // Catches: 40 runs of which a variable that does nothing correlates with one that does, and is reported to drive the number by a fifth.
     #[test]
     fn of_few_runs_what_does_nothing_is_not_named_and_shares_lie_in_their_intervals() {
         const TURNS: usize = 40;
@@ -399,7 +399,7 @@ mod tests {
     }
 
     #[test]
-    fn of_what_stands_still_and_of_few_runs_nothing_is_said() {
+    fn of_constants_and_of_few_runs_nothing_is_said() {
         let x: Vec<f64> = (0..40).map(f64::from).collect();
         let share = |x: &[f64], y: &[f64]| shares_of_variance(&numbers(&[x.to_vec()]), y, 0)[0];
         assert_eq!(share(&x, &[1.0; 40]), None);

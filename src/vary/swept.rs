@@ -14,7 +14,7 @@ use crate::recording::long_column::LongColumn;
 use crate::recording::provenance::SourceFile;
 use crate::stats::quantiles;
 
-/// Refusals that are told with their run.
+/// Refusals that are listed with their run.
 const MOST_REASONS: usize = 3;
 /// Share from which a driver stands in a terminal's line [1].
 const MIN_SHARE: f64 = 0.01;
@@ -97,7 +97,7 @@ pub struct Driver {
 }
 
 impl Driver {
-    /// Whether its share is told from chance.
+    /// Whether its share differs from chance.
     pub fn is_sure(&self) -> bool {
         self.interval[0] > self.shuffled
     }
@@ -303,7 +303,7 @@ pub fn short(key: &str) -> &str {
     key.rsplit('.').next().unwrap_or(key)
 }
 
-/// A share in percent, as it is told.
+/// A share in percent, as it is shown.
 pub fn percent(share: f64) -> String {
     match 100.0 * share {
         percent if percent > 0.0 && percent < 0.5 => "<1".to_owned(),

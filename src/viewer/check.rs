@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn other_forms_and_versions_are_told_apart() {
+    fn other_forms_and_versions_are_distinguished() {
         let mut bytes = whole();
         bytes[4..8].copy_from_slice(&[0, 41, 0, 0]);
         let message = fault(&bytes).unwrap();

@@ -14,7 +14,7 @@ const SEEDS: [u64; LANES] = [
 ];
 const PRIME: u64 = 0x0000_0100_0000_01b3;
 
-/// A number that follows from content (FNV-1a, word by word): two recordings open in one viewer are told apart, the same recording written twice is
+/// A number that follows from content (FNV-1a, word by word): two recordings open in one viewer are distinct, the same recording written twice is
 /// the same.
 pub(super) struct Fingerprint {
     lanes: [u64; LANES],

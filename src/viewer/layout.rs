@@ -118,7 +118,7 @@ pub(super) fn screen(input: &LayoutInput) -> Panel {
 /// The time panel: collapsed, on simulated time, at a moment [s] or at the start.
 ///
 /// A blueprint of Rerun 0.36 has no place for the time cursor. But a viewer that plays a loop goes to its start as soon as it is past its end, and this
-/// loop ends before the recording begins: it stands at the moment from its first picture on, until it is paused, moved, or told not to loop.
+/// loop ends before the recording begins: it stands at the moment from its first picture on, until it is paused, moved, or set not to loop.
 pub(super) fn time_panel(moment: Option<f64>) -> TimePanelBlueprint {
     let panel = TimePanelBlueprint::new()
         .with_state(PanelState::Collapsed)

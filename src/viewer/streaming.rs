@@ -37,7 +37,7 @@ pub struct StreamingRrd {
 }
 
 impl StreamingRrd {
-    /// Begins with the first samples and frames of a run, at least one sample. `origin` tells what the run is made of: runs of which it differs are told
+    /// Begins with the first samples and frames of a run, at least one sample. `origin` says what the run is made of: runs of which it differs are kept
     /// apart in a viewer even where their first samples are the same.
     ///
     /// # Errors
@@ -135,7 +135,7 @@ impl StreamingRrd {
         }
         signals::write_phases(&mut self.rrd, recording, &axes)?;
         write_summary(&mut self.rrd, &self.options.summary_markdown, scene)?;
-        // Chunks of the two stores are told apart as those of two recordings.
+        // Chunks of the two stores are distinct as those of two recordings.
         let mut layout = RrdWriter::begin(StoreKind::Blueprint, &self.id, !self.number)?;
         write_layout(&mut layout, scene, plots, recording, &self.options)?;
         Ok([layout.finish()?, self.rrd.finish()?])

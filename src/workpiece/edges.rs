@@ -456,7 +456,7 @@ mod tests {
     }
 
     #[test]
-    fn concave_edges_are_told_from_convex_ones() {
+    fn concave_edges_are_distinguished_from_convex_ones() {
         // An L without fillet: one upright edge of six is concave.
         let outline = [
             [0.0, 0.0],

@@ -319,7 +319,7 @@ mod tests {
     }
 
     #[test]
-    fn axes_and_transforms_of_collada_are_honoured_and_a_unit_beside_its_own_is_told() {
+    fn axes_and_transforms_of_collada_are_honoured_and_a_unit_beside_its_own_is_reported() {
         let part = |text: String, scale| load("part.dae", text.as_bytes(), scale).unwrap();
         let turned = part(collada("Y_UP", IDENTITY), 1.0);
         let (low, _) = turned.bounds();

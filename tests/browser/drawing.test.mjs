@@ -108,7 +108,7 @@ test("an edge under the pointer tells its numbers and its lines; picked, it stay
   assert.equal(await heading.textContent(), "edge-1");
   await page.mouse.down();
   await page.mouse.up();
-  // Over to another and away: what is picked is told again.
+  // Over to another and away: what is picked is described again.
   await page.mouse.move(...await place(page, "edge-3"));
   assert.equal(await heading.textContent(), "edge-3");
   await page.mouse.move(5, 5);
@@ -205,9 +205,9 @@ test("the lines of a picked edge run", async () => {
     const file = join(results, "picked.toml");
     writeFileSync(file, own);
     run("check", file);
-    const told = JSON.parse(run("run", file, "--no-recording", "--json", "--force", "--out", join(results, "picked")));
-    assert.equal(told.stopped, null);
-    assert.ok(Math.abs(told.summary.force_mean_n / 150 - 1) < 0.02, `${told.summary.force_mean_n} N`);
+    const result = JSON.parse(run("run", file, "--no-recording", "--json", "--force", "--out", join(results, "picked")));
+    assert.equal(result.stopped, null);
+    assert.ok(Math.abs(result.summary.force_mean_n / 150 - 1) < 0.02, `${result.summary.force_mean_n} N`);
   }
 });
 

@@ -197,8 +197,8 @@ test("a chart zooms with all of its recording, and shows all again", async () =>
   await page.evaluate(() => {
     const { plot } = window.idcCharts[0];
     const { setScale } = plot;
-    window.told = 0;
-    plot.setScale = (...range) => { window.told += 1; setScale(...range); };
+    window.calls = 0;
+    plot.setScale = (...range) => { window.calls += 1; setScale(...range); };
   });
   await zoom(page);
   const zoomed = await shown(page);
@@ -207,7 +207,7 @@ test("a chart zooms with all of its recording, and shows all again", async () =>
     assert.ok(Math.abs((to - from) / (whole[1] - whole[0]) - 0.25) < 0.02, `${from} to ${to} of ${whole}`);
     assert.deepEqual([from, to], zoomed[0]);
   }
-  assert.equal(await page.evaluate(() => window.told), 0, "those that follow do not tell the first chart in turn");
+  assert.equal(await page.evaluate(() => window.calls), 0, "those that follow do not tell the first chart in turn");
   await page.locator("figure.chart.zoomed button.reset").first().click();
   for (const ends of await shown(page)) assert.deepEqual(ends, whole);
   assert.deepEqual(faults, []);

@@ -11,7 +11,7 @@ fn words(text: &str) -> String {
 }
 
 #[test]
-fn a_right_guess_is_the_answer_and_a_wrong_one_is_told_its_odds() {
+fn a_right_guess_is_the_answer_and_a_wrong_one_gets_its_odds() {
     let bench = Bench::new("plate_edge_ideal");
     case(&bench, "case", ONE_WAY, Dirt::None);
     let law = "piston_force: -c * max(v, 0); c = 100..1000 N s/m";
@@ -32,7 +32,7 @@ fn a_right_guess_is_the_answer_and_a_wrong_one_is_told_its_odds() {
     );
     predicts_the_same(&bench);
 
-    // A spring instead: the answer stays the damper, and the spring's odds are told.
+    // A spring instead: the answer stays the damper, and the spring's odds are reported.
     let spring = "piston_force: k * x; k = -2000..2000";
     let outcome = diagnose(&bench, &["case", "--try", spring, "--out", "spring"]);
     let answer = json(&bench.path("spring/diagnosis.json"));

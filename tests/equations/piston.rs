@@ -38,7 +38,7 @@ fn eq_1_as_printed_pushes_a_device_that_is_open_to_the_air_by_23_n() {
         (end.stroke / 0.025 - 1.0).abs(),
         1e-12,
     );
-    // Told so from outside, the piston leaves: the test would see it.
+    // With the load set from outside, the piston leaves: the test would see it.
     let pushed = rest(&device, &Outside::force(printed), still(0.025), 0.0, 2000);
     assert!(pushed.stroke > 0.05);
 }

@@ -119,7 +119,7 @@ fn asks(what: &str, log: impl AsRef<[u8]>, says: &str) -> (Folder, String) {
 }
 
 #[test]
-fn lines_that_are_no_rows_hide_no_table_and_are_told() {
+fn lines_that_are_no_rows_hide_no_table_and_are_reported() {
     let lines = rows(seconds);
     for foot in [
         "EOF;;;",

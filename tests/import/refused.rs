@@ -5,7 +5,7 @@ use idc_cell::recording::parquet::read_parquet;
 use super::files::{self, truth, whole};
 use super::{Folder, channel, plain};
 
-/// Imports into `out.parquet` and expects to be told off in these words.
+/// Imports into `out.parquet` and expects to be refused in these words.
 pub fn refused(folder: &Folder, logs: &[&str], says: &[&str]) {
     let before = folder.names(".");
     let outcome = folder.idc(&[&["map.toml"], logs, &["--out", "out.parquet"]].concat());
@@ -143,7 +143,7 @@ fn texts_that_are_not_what_the_map_says() {
         &folder,
         &["log.csv"],
         &[
-            "the encoding of log.csv cannot be told: line 1 holds the byte 0x81",
+            "the encoding of log.csv cannot be determined: line 1 holds the byte 0x81",
             "encoding = \"windows-1252\"",
         ],
     );

@@ -2,7 +2,7 @@
 
 use super::bench::{Edit, LEVELS, Level, Shown, run, run_all};
 use super::{ROUNDING, heading};
-use crate::paper_page::{markdown, stands_in_the_page};
+use crate::paper_page::{is_in_the_page, markdown};
 
 /// Largest deviation while the pressure rises [% of what it rises by].
 fn while_rising(shown: &Shown, nominal: &Shown, level: &Level) -> f64 {
@@ -67,5 +67,5 @@ fn delays_are_seen_while_the_pressure_rises_and_not_after() {
             assert!(most / least > 3.0);
         }
     }
-    stands_in_the_page("delays", &markdown(&rows));
+    is_in_the_page("delays", &markdown(&rows));
 }

@@ -2,7 +2,7 @@
 
 use super::bench::{Edit, LEVELS, run_all};
 use super::{ROUNDING, heading, quick};
-use crate::paper_page::{markdown, stands_in_the_page};
+use crate::paper_page::{is_in_the_page, markdown};
 
 #[test]
 fn the_chains_rounding_alone() {
@@ -39,7 +39,7 @@ fn the_chains_rounding_alone() {
         }
         rows.extend([cells, limits]);
     }
-    stands_in_the_page("rounding", &markdown(&rows));
+    is_in_the_page("rounding", &markdown(&rows));
 }
 
 #[test]
@@ -65,7 +65,7 @@ fn amplifiers_of_bought_resistors() {
         cells.push(if could { "yes" } else { "no" }.to_owned());
         rows.push(cells);
     }
-    stands_in_the_page("resistors", &markdown(&rows));
+    is_in_the_page("resistors", &markdown(&rows));
 }
 
 /// Ways in which a deviation could have been counted: name, sign, and whether it is of the actual value.
@@ -156,5 +156,5 @@ fn a_proportional_term_on_top_of_the_set_values_steps() {
     // Half of 6.5 - 6.0 is the best that one factor can do.
     assert_eq!(rows[1].last().unwrap(), "0.250");
     assert_eq!(within, [Some(5.0)]);
-    stands_in_the_page("steps", &markdown(&rows));
+    is_in_the_page("steps", &markdown(&rows));
 }

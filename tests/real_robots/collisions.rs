@@ -141,7 +141,7 @@ fn meetings_along_a_motion_are_those_that_coal_finds() {
     }
     assert_eq!(verdicts.len(), 3 * PLACEMENTS);
     let folder = tempfile::tempdir().unwrap();
-    let [asked, reported] = ["asked.json", "told.json"].map(|name| folder.path().join(name));
+    let [asked, reported] = ["asked.json", "answered.json"].map(|name| folder.path().join(name));
     std::fs::write(&asked, serde_json::to_string(&documents).unwrap()).unwrap();
     let script = project("tests/reference/coal_placements.py");
     let done = Command::new(python)

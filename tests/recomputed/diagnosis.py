@@ -352,7 +352,7 @@ class Examination:
         for known in (r"those of 95 %", r"at no more than 90 %", r"95 % interval", r"chambers? [12]", r"of \d+ other explanations", r"none of the \d+ effects", r"of the \d+ experiments", r"joint \d", r"all \d+ recordings", r"in \d+ stretches that make [\d.]+ s", r"m/s2|mm2|cm3"):
             text = re.sub(known, " ", text)
         if self.of.json["remaining"] or any(e["name"] == "unlisted" for e in of.json["effects"]):
-            return  # A part of the device or a term without a name: its own numbers are those of diagnosis.json.
+            return  # A part of the device or a model discrepancy: its own numbers are those of diagnosis.json.
         if re.search(r"(?<![A-Za-z_])\d", re.sub(r"\w+_\w+", " ", text)):
             self.check.uncovered(where, text)
 
@@ -451,9 +451,9 @@ class Examination:
         rig = self.case / self.of.folder.name / "rig.toml" if self.case else None
         if rig is None or not rig.exists():
             return
-        believed = tomllib.loads(rig.read_text())
+        nominal = tomllib.loads(rig.read_text())
         for tolerated in self.of.json["tolerated"]:
-            entry = believed
+            entry = nominal
             for key in tolerated["key"].split("."):
                 entry = entry.get(key, {}) if isinstance(entry, dict) else {}
             if not isinstance(entry, dict) or "tolerance" not in entry:

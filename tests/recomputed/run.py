@@ -110,8 +110,8 @@ class Job:
         self.run = (BenchRun if self.is_bench else CellRun)(scenario, samples, self.folder)
         if not self.is_bench:
             # The edge is the mesh's: tested in src/workpiece.
-            told = json.loads(common.run("check", scenario.relative_to(common.PROJECT), "--json"))
-            self.run.edge_length = told["numbers"]["edge_length_mm"] / 1e3
+            stated = json.loads(common.run("check", scenario.relative_to(common.PROJECT), "--json"))
+            self.run.edge_length = stated["numbers"]["edge_length_mm"] / 1e3
         self.numbers = self.run.numbers()
         self.labels = BENCH_LABELS if self.is_bench else CELL_LABELS
         n = self.numbers
@@ -137,8 +137,8 @@ class Job:
         allowed = 0.2 + 0.005 * np.abs(held).max()
         self.checked.fact("samples: torques at rest are those that hold arm, housing, slide and force", bool(np.abs(recorded - held).max() < allowed), True)
         flange = self.run.device.get("housing_mass_kg", 0.0) + self.run.device["moving_mass_kg"]
-        told = json.loads(common.run("check", self.run.path.relative_to(common.PROJECT), "--json"))["numbers"]
-        self.checked.exact("idc check: load on the flange", told["flange_load_kg"], flange, relative=1e-9)
+        stated = json.loads(common.run("check", self.run.path.relative_to(common.PROJECT), "--json"))["numbers"]
+        self.checked.exact("idc check: load on the flange", stated["flange_load_kg"], flange, relative=1e-9)
 
     # summary.json
 
@@ -159,13 +159,13 @@ class Job:
             else:
                 self.checked.exact(where, found, value, relative=1e-7)
 
-        told = {key: value for key, value in self.document["summary"].items() if key != "timing"}
-        for key, value in told.items():
+        stated = {key: value for key, value in self.document["summary"].items() if key != "timing"}
+        for key, value in stated.items():
             if key not in self.numbers and value is not None:
                 self.checked.uncovered("summary.json", key)
             else:
                 compare(f"summary.json: {key}", value, self.numbers.get(key))
-        missing = [key for key, value in self.numbers.items() if key not in told and key != "off_percent" and value is not None]
+        missing = [key for key, value in self.numbers.items() if key not in stated and key != "off_percent" and value is not None]
         self.checked.fact("summary.json: keys that are missing", missing, [])
         self.checked.fact("summary.json: samples", self.document["samples"], len(self.run.samples))
         bounds = self.run.scenario.get("expect", {})
@@ -459,9 +459,9 @@ class Job:
             elif name == "chamfer leg, mean":
                 self.checked.sentence(where, value, ["{chamfer_leg_mean_mm} mm"], n)
                 chamfer = self.run.scenario["workpiece"].get("chamfer", {})
-                told = n | {"low": chamfer.get("leg_min_mm", 0.0), "high": chamfer.get("leg_max_mm")}
+                stated = n | {"low": chamfer.get("leg_min_mm", 0.0), "high": chamfer.get("leg_max_mm")}
                 along = "{chamfer_leg_min_mm} to {chamfer_leg_max_mm} mm along the edge"
-                self.checked.sentence(where, remark, [along + "; tolerance {low} to {high} mm", along], told)
+                self.checked.sentence(where, remark, [along + "; tolerance {low} to {high} mm", along], stated)
                 self.checked.fact(f"{where}: tolerance", "tolerance" in remark, bool(chamfer))
             elif name == "burr left, highest":
                 self.checked.sentence(where, value, ["{residual_burr_max_mm} mm"], n)
@@ -532,11 +532,11 @@ class Job:
             return float(self.run.column("contact_force_n")[nearest])
         return float(np.linalg.norm([self.run.column(f"contact_force_{axis}_n")[nearest] for axis in "xyz"]))
 
-    def space(self, told):
+    def space(self, stated):
         """The drawing in space: each piece of the edge has the mean force error of its samples, its legend their scale, its arrow the force."""
         where = "page, in space"
         errors = self.run.piece_errors()
-        (edge,) = told["lines"]
+        (edge,) = stated["lines"]
         values = floats(edge["values"])
         self.checked.fact(f"{where}: pieces", len(values), len(errors))
         for number, (value, error) in enumerate(zip(values, errors)):
@@ -549,37 +549,37 @@ class Job:
         self.checked.sentence(f"{where}: {edge['facts'][0][0]}", edge["facts"][0][1], ["{edge} mm"], {"edge": 1e3 * self.run.edge_length})
         self.checked.fact(f"{where}: facts", len(edge["facts"]), 1)
         scale = self.run.colour_scale()
-        for printed, end in zip(told["legend"]["ends"], (-scale, None, scale), strict=True):
+        for printed, end in zip(stated["legend"]["ends"], (-scale, None, scale), strict=True):
             if end is None:
                 self.checked.fact(f"{where}: legend", printed, "as desired")
             else:
                 self.checked.sentence(f"{where}: legend", printed, ["{end} %"], {"end": end})
-        self.checked.fact(f"{where}: pieces without contact are in the legend", bool(told["legend"]["none"]), bool(np.isnan(errors).any()))
-        self.checked.sentence(f"{where}: arrow", told["arrow"]["label"], ["{force} N"], {"force": self.force_shown()})
-        self.checked.exact(f"{where}: arrow, length", float(np.linalg.norm(told["arrow"]["along"])), 1.0, relative=1e-6)
-        self.checked.sentence(f"{where}: words", told["words"], [f"The mean force error of each of {{pieces}} pieces of the edge while following. {words}" for words in SPACE], {"pieces": len(errors)})
+        self.checked.fact(f"{where}: pieces without contact are in the legend", bool(stated["legend"]["none"]), bool(np.isnan(errors).any()))
+        self.checked.sentence(f"{where}: arrow", stated["arrow"]["label"], ["{force} N"], {"force": self.force_shown()})
+        self.checked.exact(f"{where}: arrow, length", float(np.linalg.norm(stated["arrow"]["along"])), 1.0, relative=1e-6)
+        self.checked.sentence(f"{where}: words", stated["words"], [f"The mean force error of each of {{pieces}} pieces of the edge while following. {words}" for words in SPACE], {"pieces": len(errors)})
 
-    def chart(self, told):
+    def chart(self, stated):
         """All that a chart draws is in the samples, or of a finished edge in edge_profile.csv."""
-        if told["y"] in ("leg [mm]", "height [mm]"):
+        if stated["y"] in ("leg [mm]", "height [mm]"):
             known = np.sort(pd.read_csv(self.folder / "edge_profile.csv").to_numpy().ravel())
-            for series in told["series"]:
+            for series in stated["series"]:
                 drawn = floats(series["values"])
                 drawn = drawn[np.isfinite(drawn)].astype(float)
                 after = np.clip(np.searchsorted(known, drawn), 1, len(known) - 1)
                 off = np.minimum(np.abs(drawn - known[after]), np.abs(drawn - known[after - 1])) > 1e-6 * np.maximum(1.0, drawn)
-                self.checked.fact(f"chart {told['y']}: {series['label']}: values that no station has", int(off.sum()), 0)
+                self.checked.fact(f"chart {stated['y']}: {series['label']}: values that no station has", int(off.sum()), 0)
             return
-        factor = {"force [N]": 1.0, "stroke [mm]": 1e3, "pressure [bar absolute]": 1e-5, "error [µm]": 1e6, "torque [N m]": 1.0}.get(told["y"])
+        factor = {"force [N]": 1.0, "stroke [mm]": 1e3, "pressure [bar absolute]": 1e-5, "error [µm]": 1e6, "torque [N m]": 1.0}.get(stated["y"])
         if factor is None:
-            self.checked.uncovered("chart", told["y"])
+            self.checked.uncovered("chart", stated["y"])
             return
-        for series in told["series"]:
+        for series in stated["series"]:
             drawn = floats(series["values"])
             drawn = drawn[np.isfinite(drawn)]
             known = self.run.samples.select_dtypes("number").to_numpy() * factor
             fits = np.isin(drawn, known.astype("f4"))
-            self.checked.fact(f"chart {told['y']}: {series['label']}: values that no sample has", int((~fits).sum()), 0)
+            self.checked.fact(f"chart {stated['y']}: {series['label']}: values that no sample has", int((~fits).sum()), 0)
 
 
 # Scenarios that show what is refused: they leave nothing to recompute.

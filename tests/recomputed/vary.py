@@ -89,16 +89,16 @@ def main():
     folder, checked = common.RESULTS / "vary", Checked("vary")
     printed = common.run(*SWEEP, "--out", folder, "--force")
     table = pd.read_parquet(folder / "runs.parquet")
-    told = json.loads((folder / "vary.json").read_text())
+    result = json.loads((folder / "vary.json").read_text())
     columns = [table[key].to_numpy(float) for key in KEYS]
     for key, x in zip(KEYS, columns):
-        variable = next(v for v in told["variables"] if v["key"] == key)
+        variable = next(v for v in result["variables"] if v["key"] == key)
         checked.fact(f"{key}: ends", variable["ends"], [x.min(), x.max()])
         whole = key == "simulation.seed"
         checked.fact(f"{key}: whole numbers", (variable["which"], bool((x == np.round(x)).all())), ("whole numbers" if whole else "any number between", whole))
     ranks = np.corrcoef(np.argsort(np.argsort(columns[:3], axis=1), axis=1))
     checked.fact("ranks of the points do not correlate", bool(np.abs(ranks - np.eye(3)).max() < 0.1), True)
-    for metric in told["metrics"]:
+    for metric in result["metrics"]:
         name, y = metric["name"], table[metric["name"]].to_numpy(float)
         known = np.isfinite(y)
         checked.fact(f"{name}: runs", metric["runs"], int((~np.isnan(y)).sum()))
@@ -125,7 +125,7 @@ def main():
             if driver["key"] == "simulation.seed":
                 # The ideal device has no noise: the seed does nothing.
                 checked.fact(f"{where}: is named", driver["interval"][0] > driver["shuffled"], False)
-    mean = next(m for m in told["metrics"] if m["name"] == "force_mean_n")
+    mean = next(m for m in result["metrics"] if m["name"] == "force_mean_n")
     checked.fact("force: named first in the text", "driven by force" in next(line for line in printed.splitlines() if line.startswith("force, mean")), True)
     checked.fact("force drives its mean", (mean["drivers"][0]["key"], mean["drivers"][0]["share"] > 0.98), ("process.force_n", True))
     for line in checked.wrong:

@@ -5,7 +5,7 @@ State: air mass of each chamber [kg], stroke [m], speed [m/s], and with gas_proc
 in each chamber [J], all scaled to about 1. The regulator's outlet is put in by its closed form. SI units; equation numbers are
 those of the source paper.
 
-The right-hand side has branches: regimes of the orifices, modes of the contacts. It can be told to keep to one of them, on which it is
+The right-hand side has branches: regimes of the orifices, modes of the contacts. It can be made to keep to one of them, on which it is
 smooth, for an integration that stops at the border.
 """
 

@@ -172,7 +172,7 @@ def section(
 def turns(bench: Bench, path: OdeSolution, valve: str, chamber: int) -> list[tuple[float, float]]:
     """When the flow of a chamber turns round [s] and its air then [kg].
 
-    The law is smooth there, but air that entered is to be told from air that left. Sought after the integration: near rest the flow
+    The law is smooth there, but air that entered is to be distinguished from air that left. Sought after the integration: near rest the flow
     is rounding errors of either sign, on which an event of solve_ivp fails and the quadrature of max(0, flow) makes no progress.
     """
     fall = fall_at(bench, valve, chamber, 0.0)

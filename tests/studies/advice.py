@@ -400,8 +400,8 @@ def main():
         rows.append(row)
         with results.open("a") as file:
             file.write(json.dumps(row) + "\n")
-        told = ", ".join(f"{remedy['kind']} {remedy['exit']}" for remedy in row["remedies"])
-        print(f"{index} {row['robot']} {'; '.join(row['spoilt'])}: {told or 'no remedy'}", file=sys.stderr)
+        kinds = ", ".join(f"{remedy['kind']} {remedy['exit']}" for remedy in row["remedies"])
+        print(f"{index} {row['robot']} {'; '.join(row['spoilt'])}: {kinds or 'no remedy'}", file=sys.stderr)
     report(rows)
 
 

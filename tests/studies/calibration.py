@@ -61,8 +61,8 @@ def stated_of(answer, names):
             if e["name"] == name and (more is None or more in (e.get("key"), e.get("subsystem"))):
                 found.append(e["confidence"])
         if not any(e["name"] == name for e in answer["effects"]) and name != "unlisted":
-            spoken = f"{name} ({more})" if more else name
-            found.append(sum(share for effects, share in weights(answer)[1] if spoken in effects))
+            display_name = f"{name} ({more})" if more else name
+            found.append(sum(share for effects, share in weights(answer)[1] if display_name in effects))
         for family in answer.get("families") or []:
             found += [m["probability"] for m in family["members"] if m["name"] == name and (more is None or m.get("key") == more)]
     return max(found)

@@ -149,11 +149,11 @@ def case(folder, cell, effect):
         if not (out / "samples.parquet").exists():
             put = ["--with", effect] if effect else []
             idc("run", file, *put, "--out", out, "--quiet")
-    believed = folder / f"{cell}.toml"
-    believed.write_text(scenario(cell, PROGRAMS[0]))
+    nominal = folder / f"{cell}.toml"
+    nominal.write_text(scenario(cell, PROGRAMS[0]))
     answer_file = folder / "out" / name / "diagnosis.json"
     if not answer_file.exists():
-        idc("diagnose", runs, "--scenario", believed, "--out", folder / "out" / name, "--quiet")
+        idc("diagnose", runs, "--scenario", nominal, "--out", folder / "out" / name, "--quiet")
     answer = json.loads(answer_file.read_text())
     found = [(e["name"], e["parameters"].get("joint", {}).get("value")) for e in answer["effects"]]
     planted = None

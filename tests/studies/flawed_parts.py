@@ -246,15 +246,15 @@ def judge(idc, path, truth, places, size):
         return "refused", done.stderr.strip()
     if done.returncode != 0:
         return "bad", done.stderr.strip()
-    told = json.loads(done.stdout)
-    change = abs(told["volume_mm3"] / truth - 1)
-    found = [place for mended in told["mended"] for place in mended["places_mm"]]
-    # A face's flaw is told by its middle, by a corner or by the middle of its sides.
+    reported = json.loads(done.stdout)
+    change = abs(reported["volume_mm3"] / truth - 1)
+    found = [place for mended in reported["mended"] for place in mended["places_mm"]]
+    # A face's flaw is located by its middle, by a corner or by the middle of its sides.
     near = lambda place: any(math.dist(place, other) < 0.02 * size + place_reach for other in found)
     place_reach = 0.35 * size
     missed = sum(not near(place) for place in places)
     if change > 1e-3 or missed:
-        return "bad", f"volume changed by {change:.2e}, {missed} of {len(places)} places not told: {told['notes']}"
+        return "bad", f"volume changed by {change:.2e}, {missed} of {len(places)} places not reported: {reported['notes']}"
     return "mended", f"volume changed by {change:.1e}"
 
 

@@ -50,8 +50,8 @@ def main():
             for program in PROGRAMS[:4]:
                 (case / "run.toml").write_text(text(cell, program, seals))
                 idc("run", case / "run.toml", "--out", case / "runs" / program[0], "--quiet", "--force")
-            (case / "believed.toml").write_text(text(cell, PROGRAMS[0], seals))
-            idc("diagnose", case / "runs", "--scenario", case / "believed.toml", "--out", case / "out", "--quiet", "--force")
+            (case / "nominal.toml").write_text(text(cell, PROGRAMS[0], seals))
+            idc("diagnose", case / "runs", "--scenario", case / "nominal.toml", "--out", case / "out", "--quiet", "--force")
             compared = pd.read_parquet(case / "out/comparison.parquet")
             each = [
                 differences(rows, pd.read_parquet(case / "runs" / recording / "samples.parquet"))

@@ -223,7 +223,7 @@ pub(super) fn recorded(file: &Path) -> Result<Report, AppError> {
         ),
     );
     for present in &scenario.effects {
-        report.fact("believed", present.effect.name);
+        report.fact("nominal effect", present.effect.name);
     }
     files(&mut report, &scenario.arm, &scenario.workpiece);
     report.next(format!(

@@ -49,7 +49,7 @@ pub(super) fn removal_table(path: &Path) -> Result<Report, AppError> {
     if table.nominal.threshold > 0.0 {
         law += &format!(", above {} N", shown(table.nominal.threshold));
     }
-    report.fact("believed", law);
+    report.fact("nominal law", law);
     report.number("rows", case.rows.len());
     report.number("rows_to_predict", case.unseen.len());
     let folder = file.parent().unwrap_or(Path::new(""));

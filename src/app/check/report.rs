@@ -188,7 +188,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_path_is_told_without_detours() {
+    fn a_path_is_shown_without_detours() {
         for (path, shown) in [
             ("scenarios/../models/device.toml", "models/device.toml"),
             ("../a/./b/../c.stl", "../a/c.stl"),

@@ -19,11 +19,7 @@ const OTHER_RATE: f64 = 0.05;
 /// A rig file alone.
 pub(super) fn rig(file: &Path) -> Result<Report, AppError> {
     let rig = load_rig(file)?;
-    let mut report = Report::new(
-        file,
-        "a rig file: a device as its owner believes it to be",
-        None,
-    );
+    let mut report = Report::new(file, "a rig file: a device by its nominal values", None);
     describe(&mut report, &rig);
     let folder = file.parent().unwrap_or(Path::new(""));
     for name in rig.fit.iter().filter(|name| !name.contains('*')) {
@@ -96,14 +92,14 @@ fn describe(report: &mut Report, rig: &RigFile) {
         .map(|t| format!("{} to {} %", t.key, shown(t.tolerance * 100.0)))
         .collect();
     for (index, chunk) in tolerances.chunks(2).enumerate() {
-        report.fact(if index == 0 { "believed" } else { "" }, chunk.join(", "));
+        report.fact(if index == 0 { "nominal" } else { "" }, chunk.join(", "));
     }
     for present in &rig.effects {
         report.fact("effect", present.effect.name);
     }
     if let Some(latent) = &plant.latent {
         let variable = latent.variable.name();
-        report.fact("latent", format!("a term without a name over {variable}"));
+        report.fact("latent", format!("a model discrepancy over {variable}"));
     }
     if plant.parts == DeviceParts::Whole {
         report.fact("rate", format!("{} Hz", shown(rig.rate)));

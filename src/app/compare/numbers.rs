@@ -84,7 +84,7 @@ pub(super) fn text(compared: &Compared) -> String {
     text
 }
 
-/// The ends of folders' paths by which they are told apart: their last parts, or as many more as it takes.
+/// The ends of folders' paths by which they are distinguished: their last parts, or as many more as it takes.
 pub(super) fn short(names: &[String]) -> Vec<String> {
     let parts = |name: &String| -> Vec<String> {
         let parts = Path::new(name).components();

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! M moving mass [kg], g_a component of gravity along extension [m/s2], F_b breakaway friction of the seals [N], which holds either way,
-//! K A_1 p_max force of the largest pressure that the regulator can be told and the supply can give [N].
+//! K A_1 p_max force of the largest set pressure that the supply can give [N].
 
 use crate::device::{DeviceParameters, PressureMap};
 use crate::scenario::largest_set_pressure;
@@ -55,7 +55,7 @@ mod tests {
         near(range(&device, [-9.81; 2]), [0.0, 965.097 - 39.24]);
         device.seal_friction.static_force = 12.0;
         near(range(&device, [-9.81, 5.0]), [32.0, 965.097 - 39.24 - 12.0]);
-        // A regulator that gives less than it is told reaches less, one that gives more is still held to the supply.
+        // A regulator that gives less than its set pressure reaches less, one that gives more is still held to the supply.
         device.regulator.gain = 0.9;
         near(range(&device, [0.0; 2]), [12.0, 0.9 * 965.097 - 12.0]);
         device.regulator.gain = 1.2;

@@ -72,7 +72,7 @@ impl PreparedStudy {
         &self.folder
     }
 
-    /// Does it and writes its files. `progress` is told designs evaluated and the most that will be, from any thread.
+    /// Does it and writes its files. `progress` gets designs evaluated and the most that will be, from any thread.
     pub(super) fn run(
         &self,
         progress: &(dyn Fn(usize, usize) + Sync),

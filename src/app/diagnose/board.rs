@@ -110,7 +110,7 @@ fn sheet(answer: &Answer, recording: &Compared, of_flange: bool) -> Sheet {
     }
 }
 
-/// Robust error of the believed model in a channel of a recording, over its noise [1]: what differs most is drawn first.
+/// Robust error of the nominal model in a channel of a recording, over its noise [1]: what differs most is drawn first.
 fn lacking(answer: &Answer, recording: &Compared, channel: &ComparedChannel) -> f64 {
     let column = COLUMNS[channel.channel as usize];
     let fitted = answer.details.misfit.iter();
@@ -138,7 +138,7 @@ fn row(
         role,
         values: kept.iter().map(|i| factor * value(*i)).collect(),
     };
-    let before = if of_flange { "desired" } else { "as believed" };
+    let before = if of_flange { "desired" } else { "nominal" };
     let models = [
         (&channel.nominal, before, BoardRole::Nominal),
         (&channel.improved, "improved", BoardRole::Improved),
@@ -190,7 +190,7 @@ fn usual_range(lines: &[BoardLine], guides: &[(String, f64)]) -> Option<[f64; 2]
     (most > 0.0).then_some([-most, most])
 }
 
-/// When the channels differ from the believed model, a lane for each.
+/// When the channels differ from the nominal model, a lane for each.
 fn lanes(answer: &Answer, recording: &Compared, start: f64) -> Vec<Lane> {
     let state = match &answer.effects[..] {
         [only] => only.name.replace('_', " "),
@@ -270,7 +270,7 @@ fn of_balance(balance: &Balance) -> Cloud {
         horizontal: format!("{words} [{of}]"),
         vertical: format!("what it lacks [{unit}]"),
         groups: vec![
-            group("as believed", BoardRole::Nominal, &balance.before, -SIDE),
+            group("nominal", BoardRole::Nominal, &balance.before, -SIDE),
             group("improved", BoardRole::Improved, &balance.after, SIDE),
         ],
     }

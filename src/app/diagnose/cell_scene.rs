@@ -1,11 +1,11 @@
-//! A recorded cell in space: the arm as its encoders read, pale, beside that of the improved model and that of the believed one, and the edge coloured by
-//! where the believed model's force is off.
+//! A recorded cell in space: the arm as its encoders read, pale, beside that of the improved model and that of the nominal one, and the edge coloured by
+//! where the nominal model's force is off.
 //!
 //! ```text
 //! q = q_s + k (q_o - q_s)                 k = 1, 2, 5, 10 .. 100
 //! ```
 //!
-//! q drawn, q_s joint angles and stroke of the improved model, q_o recorded or believed ones. What an arm gives is less than a millimetre, and nobody would
+//! q drawn, q_s joint angles and stroke of the improved model, q_o recorded or nominal ones. What an arm gives is less than a millimetre, and nobody would
 //! see it: k makes the recorded arm's departure some 30 mm.
 
 use glam::DVec3;
@@ -29,7 +29,7 @@ use crate::workpiece::load_mesh;
 const FRAME_INTERVAL: f64 = 0.02;
 /// The recorded arm.
 const PALE: Colour = [225, 230, 240, 90];
-/// The arm of the believed model.
+/// The arm of the nominal model.
 const AMBER: Colour = [235, 165, 60, 90];
 /// Largest distance at which the recorded tool is drawn from the simulated one, about [m].
 const SEEN: f64 = 0.03;
@@ -92,7 +92,7 @@ pub(super) fn cell_scene(
     for (name, angles, stroke, colour) in [
         ("simulated", &simulated, out, None),
         ("recorded", &recorded, measured_out, Some(PALE)),
-        ("believed", &nominal, nominal_out, Some(AMBER)),
+        ("nominal", &nominal, nominal_out, Some(AMBER)),
     ] {
         let poses = poses(cell, angles, &frames);
         let mut own = arm_bodies(cell, &arm, &poses);
@@ -134,9 +134,9 @@ fn scale(apart: f64) -> f64 {
 
 fn title(recording: &str, scale: f64) -> String {
     match scale {
-        1.0 => format!("{recording}: improved arm, recorded pale, believed amber"),
+        1.0 => format!("{recording}: improved arm, recorded pale, nominal amber"),
         scale => format!(
-            "{recording}: improved arm, recorded pale, believed amber, their departures x{scale}"
+            "{recording}: improved arm, recorded pale, nominal amber, their departures x{scale}"
         ),
     }
 }
@@ -262,7 +262,7 @@ fn part(cell: &LoadedCell) -> Result<SceneBody, AppError> {
     })
 }
 
-/// The edge as far as it was ridden, with the mean of (measured - believed) / believed force over each segment.
+/// The edge as far as it was ridden, with the mean of (measured - nominal) / nominal force over each segment.
 fn edge_path(drawn: &Drawn<'_>) -> EdgePath {
     let edge = &drawn.trajectory.edge;
     let stations = || edge.iter().map(|place| place.station);
@@ -334,7 +334,7 @@ mod tests {
         assert_eq!(scale(0.2), 1.0);
         assert_eq!(
             title("a.csv", 1.0),
-            "a.csv: improved arm, recorded pale, believed amber"
+            "a.csv: improved arm, recorded pale, nominal amber"
         );
         assert!(title("a.csv", scale(1e-3)).ends_with("departures x20"));
     }

@@ -1,8 +1,8 @@
 //! comparison.parquet and balance.parquet: what a diagnosis compared, for pages, notebooks and other programs.
 //!
 //! comparison.parquet has a row per sample of each recording: `recording`, `kept` (`fitted`, or `unseen` where it was kept from the fit), `time_s`, then
-//! `measured_`, `believed_`, `tolerated_` (the believed model moved within its tolerances), `improved_` and `left_out_` (the improved model fitted to the
-//! other recordings) of each channel. balance.parquet has a row per sample: `link`, `variable` and `value` (what says when the link lacks something),
+//! `measured_`, `believed_`, `tolerated_` (the nominal model moved within its tolerances), `improved_` and `left_out_` (the improved model fitted to the
+//! other recordings) of each channel. balance.parquet has a row per sample: `link`, `variable` and `value` (the variable that explains when the link lacks something),
 //! `channel` (in whose unit it lacks) and `before` and `after`.
 
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! fit.svg: of a part of the device, each recording as measured, as believed and with what was found, and what is left.
+//! fit.svg: of a part of the device, each recording as measured, by the nominal and by the improved model, and the residual.
 
 use super::super::error::AppError;
 use crate::diagnosis::answer::finding::Diagnosis;
@@ -35,7 +35,7 @@ pub(super) fn picture(diagnosis: &Diagnosis) -> Result<Option<String>, AppError>
             horizontal: Horizontal::Time,
             series: vec![
                 of(readings, "measured", Role::Measured, Stroke::Plain),
-                of(nominal, "as believed", Role::Command, Stroke::Dashed),
+                of(nominal, "nominal", Role::Command, Stroke::Dashed),
                 of(found, "with what was found", Role::Estimate, Stroke::Plain),
             ],
             ..Panel::default()
@@ -50,7 +50,7 @@ pub(super) fn picture(diagnosis: &Diagnosis) -> Result<Option<String>, AppError>
             series: vec![
                 of(
                     &left(nominal),
-                    "measured less believed",
+                    "measured - nominal",
                     Role::Command,
                     Stroke::Raw,
                 ),

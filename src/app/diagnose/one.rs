@@ -96,7 +96,7 @@ impl Prepared {
         })
     }
 
-    /// Diagnoses it and writes its files; `observer` is told of its progress.
+    /// Diagnoses it and writes its files; `observer` gets its progress.
     pub(super) fn run(self, observer: &mut Observer<'_>) -> Result<Finished, AppError> {
         match &self.subject {
             Subject::Recordings(case) => self.of_recordings(case, observer),
@@ -179,7 +179,7 @@ fn how_to_run(cell: Option<&LoadedCell>, file: &Path) -> String {
             "`idc run {improved}` runs the cell with what was found, on the job of the scenario file; `idc compare` tells its run from others."
         ),
         Some(_) => format!(
-            "`idc diagnose RUNS --scenario {improved}` takes what was found as believed. The file has no job, so `idc run` does not take it."
+            "`idc diagnose RUNS --scenario {improved}` takes what was found as nominal. The file has no job, so `idc run` does not take it."
         ),
         None => format!(
             "`idc predict {improved} INPUTS.csv` predicts a recording with what was found; a bench runs it as its device, with `device.model = {:?}`.",

@@ -16,7 +16,7 @@ use crate::viewer::write_board;
 
 const ACCOUNT: &str = "account.txt";
 const PREDICTION: &str = "prediction.csv";
-/// Shape of physics without a name, where there is such.
+/// Shape of a model discrepancy, where there is such.
 const PICTURE: &str = "unlisted.svg";
 /// Before and after, of a part of the device.
 const FIT_PICTURE: &str = "fit.svg";

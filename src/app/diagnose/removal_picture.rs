@@ -26,7 +26,7 @@ pub(super) fn picture(diagnosis: &RemovalDiagnosis, is_feed: bool) -> Result<Str
             vertical_label: "ln(measured / predicted)".to_owned(),
             horizontal: Horizontal::Quantity(label.to_owned()),
             series: vec![
-                series("as believed", &diagnosis.nominal, Role::Command),
+                series("nominal", &diagnosis.nominal, Role::Command),
                 series("with what was found", &diagnosis.found, Role::Estimate),
             ],
             ..Panel::default()

@@ -5,7 +5,7 @@ use crate::diagnosis::search::progress::{Progress, Step};
 /// Stages in their order.
 const STAGES: [&str; 5] = [
     "reading the recordings",
-    "fitting the believed model",
+    "fitting the nominal model",
     "weighing explanations",
     "locating the mismatch",
     "comparing experiments",
@@ -80,7 +80,7 @@ mod tests {
         };
         let name = CATALOGUE[0].name.replace('_', " ");
         assert_eq!(first(), "1 of 5: reading the recordings");
-        assert_eq!(Stages::begun(), "2 of 5: fitting the believed model");
+        assert_eq!(Stages::begun(), "2 of 5: fitting the nominal model");
         assert_eq!(shown(Step::Baseline, 0), (Stages::begun(), None));
         let searching = "3 of 5: weighing explanations".to_owned();
         let with_name = format!("{searching}, {name}");

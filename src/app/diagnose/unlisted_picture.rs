@@ -1,4 +1,4 @@
-//! unlisted.svg: a term without a name against its variable, with its 95 % band, what the recordings say is needed there, and the form that comes next.
+//! unlisted.svg: a model discrepancy against its variable, with its 95 % band, what the recordings say is needed there, and the form that comes next.
 
 use super::super::error::AppError;
 use crate::diagnosis::answer::finding::Diagnosis;

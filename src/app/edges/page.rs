@@ -193,7 +193,7 @@ fn distinguishable(curves: &[EdgeCurve]) -> Vec<usize> {
     colours
 }
 
-/// What is told of an edge, the first two under the pointer as well.
+/// What is shown of an edge, the first two under the pointer as well.
 fn facts(curve: &EdgeCurve) -> Vec<[String; 2]> {
     let shape = match curve.kind {
         CurveKind::Arc { radius, angle } => format!(

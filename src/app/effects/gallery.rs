@@ -21,7 +21,7 @@ const INTRODUCTION: &str = "\
 
 The physics that a model of a cell or a device may lack, as `idc diagnose` looks for it and `idc run --with` puts it in. `idc effects` lists them, `idc effects NAME` tells what stands here of one.
 
-Each picture is two runs of the simulator, as believed and with the effect, without noise: the signals that show it most, at the time at which they do. The size is in the title; it is the usual
+Each picture is two runs of the simulator, nominal and with the effect, without noise: the signals that show it most, at the time at which they do. The size is in the title; it is the usual
 one where that is seen. Runs are those of the scenarios in [assets/effects](../assets/effects): [steps](../assets/effects/steps.toml) of the set pressure on a load cell, a surface that goes to
 and fro ([sway](../assets/effects/sway.toml)), free [strokes](../assets/effects/strokes.toml) and strokes that [draw](../assets/effects/draw.toml) much air, a stretch of an
 [edge](../assets/effects/edge.toml) with the arm. What only a rig with a part of the device shows (`[rig] chain`; marked \\*) is a slide that is driven to and fro, a chamber that is shut off, or a

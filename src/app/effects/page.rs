@@ -72,7 +72,7 @@ pub(super) fn heading(subsystem: Subsystem) -> &'static str {
     }
 }
 
-/// All of them, in the order in which they are told.
+/// All of them, in the order in which they are listed.
 pub(super) const SUBSYSTEMS: [Subsystem; 7] = [
     Subsystem::ForceBalance,
     Subsystem::Chambers,
@@ -243,7 +243,7 @@ impl Explained {
         }
         let _ = writeln!(
             text,
-            "\n![{}: as believed and with the effect](pictures/effects/{}.svg)\n",
+            "\n![{}: nominal and with the effect](pictures/effects/{}.svg)\n",
             self.name, self.name
         );
         let _ = writeln!(text, "**Shows as.** {}\n", plain(&capital(self.signature)));
@@ -310,7 +310,7 @@ fn plain(text: &str) -> String {
         .replace('<', "&lt;")
 }
 
-/// Effects with their subsystem, in the order in which they are told.
+/// Effects with their subsystem, in the order in which they are listed.
 pub(super) fn by_subsystem() -> impl Iterator<Item = (&'static str, Vec<&'static Effect>)> {
     SUBSYSTEMS.into_iter().map(|subsystem| {
         let own = kinds().filter(|effect| effect.subsystem == subsystem);

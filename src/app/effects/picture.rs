@@ -1,4 +1,4 @@
-//! The picture of an effect: the signals that show it most, as believed and with it.
+//! The picture of an effect: the signals that show it most, nominal and with it.
 
 use super::super::error::AppError;
 use super::page::title;
@@ -17,7 +17,7 @@ pub(super) struct Picture {
     pub difference: f64,
 }
 
-/// Runs the scene of an effect as believed and with it, and draws both.
+/// Runs the scene of an effect nominal and with it, and draws both.
 pub(super) fn picture(effect: &Effect, stage: &Stage) -> Result<Picture, AppError> {
     let runs = stage.runs(effect)?;
     let time = &runs[0].time;
@@ -58,12 +58,7 @@ pub(super) fn picture(effect: &Effect, stage: &Stage) -> Result<Picture, AppErro
         if let (true, Some(set)) = (is_outlet, runs[0].set.get(span.clone())) {
             series.push(line("set", set, Role::Command, Stroke::Raw));
         }
-        series.push(line(
-            "as believed",
-            values[0],
-            Role::Measured,
-            Stroke::Truth,
-        ));
+        series.push(line("nominal", values[0], Role::Measured, Stroke::Truth));
         series.push(line(
             "with the effect",
             values[1],

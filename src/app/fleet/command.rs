@@ -21,11 +21,11 @@ pub(in super::super) const EXAMPLES: &str = "\
 FOLDER/DEVICE/DATE: each DATE is a recording, or a folder of them, whose name
 begins with its date, as in 2026-03-01 or 20260301T0600. Recordings of a device
 are diagnosed in the order of their days. One that the device's last improved
-model, or the believed one, predicts to the noise needs no search. The same
+model, or the nominal one, predicts to the noise needs no search. The same
 command on another day does that day's recordings alone.
 
 Exit codes: 0 done, whatever was found; 2 bad input (a recording that cannot be
-read is told in the report, the others are done).
+read is listed in the report, the others are done).
 
 Examples:
   # Two days of a bench's device, as if they had been recorded.
@@ -41,7 +41,7 @@ Examples:
 pub(in super::super) struct FleetArguments {
     /// Folder of folders of devices, each with recordings by their dates.
     folder: PathBuf,
-    /// What is believed of all devices: a cell's scenario, or a rig file.
+    /// The nominal model of all devices: a cell's scenario, or a rig file.
     #[arg(long)]
     scenario: PathBuf,
     #[command(flatten)]

@@ -37,7 +37,7 @@ fn page(found: &Found) -> Result<Document<'static>, AppError> {
         (
             "searched",
             found.searched.to_string(),
-            "the others were predicted to the noise by the believed or the last improved model"
+            "the others were predicted to the noise by the nominal or the last improved model"
                 .to_owned(),
         ),
     ];

@@ -107,7 +107,7 @@ fn head(
     })
 }
 
-/// Files of what is believed.
+/// Files of the nominal model.
 fn nominal(scenario: &Path, files: &mut Files) -> Result<Vec<SourceFile>, AppError> {
     let mut found = vec![files.one(scenario)?];
     if !is_rig(scenario) {
@@ -150,7 +150,7 @@ fn asked(device: &str, dated: &Dated, folder: &Path, rig: bool) -> Asked {
     }
 }
 
-/// Name of a task: of the program, what is believed, the recording's content, and what it begins with.
+/// Name of a task: of the program, the nominal model, the recording's content, and what it begins with.
 fn name(head: &Head, files: &[SourceFile], begins: &str) -> String {
     let hash = |file: &SourceFile| file.sha256.clone();
     let shared: Vec<String> = head.files.iter().map(hash).collect();

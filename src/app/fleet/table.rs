@@ -50,7 +50,7 @@ fn group(recordings: &[Recording]) -> Vec<LongColumn> {
                 bare.into_iter().chain(own)
             })
             .collect();
-        // What is believed within a tolerance is of no effect.
+        // A nominal value with a tolerance is of no effect.
         rows.extend(
             recording
                 .result

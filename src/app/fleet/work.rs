@@ -19,7 +19,7 @@ const IMPROVED: &str = "improved.toml";
 /// What all tasks share.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Shared {
-    /// What is believed of all devices: a cell's scenario, or a rig file, from the plan's folder or the root.
+    /// The nominal model of all devices: a cell's scenario, or a rig file, from the plan's folder or the root.
     pub scenario: String,
 }
 
@@ -41,7 +41,7 @@ pub(super) struct Asked {
     pub fit: Option<Vec<Started>>,
 }
 
-/// What is believed.
+/// The nominal model.
 enum NominalModel {
     Rig(Box<RigFile>),
     Cell(Box<LoadedCell>),
@@ -65,13 +65,13 @@ impl Worker {
         Self::of(&plan.folder().join(&shared.scenario), plan.folder())
     }
 
-    /// One for what is believed, with recordings named from a folder.
+    /// One for the nominal model, with recordings named from a folder.
     pub(super) fn of(file: &Path, folder: &Path) -> Result<Self, AppError> {
         let nominal = match load_rig(file) {
             Ok(rig) => NominalModel::Rig(Box::new(rig)),
             Err(of_rig) => match LoadedCell::load(file) {
                 Ok(cell) => NominalModel::Cell(Box::new(cell)),
-                // A file of a rig that has a fault is told as such.
+                // A file of a rig that has a fault is reported as such.
                 Err(_) if says_rig(file) => return Err(of_rig.into()),
                 Err(of_cell) => return Err(of_cell.into()),
             },

@@ -469,7 +469,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn keys_are_put_in_their_tables_and_the_rest_stays() {
+    fn keys_are_written_to_their_tables_and_the_rest_stays() {
         let text = "[arm]\nurdf = \"a\"\nflange_link = \"b\"\n\n[arm.servo]\nencoder_noise_rad = 1\n\n[[arm.drives]]\njoint = \"x\"\n\n[device]\nmodel = \"m\"\n";
         let mut lines = Lines::of(&without_drives(text));
         lines.put("urdf", "\"c\"");

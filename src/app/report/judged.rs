@@ -53,7 +53,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_are_told_by_what_they_decide() {
+    fn values_are_listed_by_what_they_decide() {
         let value = |key: &str, default: bool, decides: &str| serde_json::json!({ "key": key, "default": default, "decides": decides });
         let document = serde_json::json!({ "judged": [
             value("removal.a", false, "leg"),

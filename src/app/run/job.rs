@@ -97,7 +97,7 @@ impl Job {
         source.provenance(&files, seed)
     }
 
-    /// Runs it and writes its files. `told` is told steps done and in all.
+    /// Runs it and writes its files. `progress` gets steps done and in all.
     pub(super) fn perform(
         &self,
         source: &Source,

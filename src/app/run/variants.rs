@@ -38,7 +38,7 @@ pub(super) fn run(
     let checked = in_order(variants.len(), jobs, |index| {
         job(template, &variants[index]).map(drop)
     });
-    // One that panics is met, and told, as it is run.
+    // One that panics is met, and reported, as it is run.
     checked
         .into_iter()
         .flatten()

@@ -129,7 +129,7 @@ fn drivers(swept: &Swept) -> Section<'static> {
     )
 }
 
-/// The variables of which a number's shares are not told from chance, in a row, with how large one of them may be all the same.
+/// The variables whose shares of a number do not differ from chance, in a row, with how large one of them may be all the same.
 fn unsure(metric: &MetricOfRuns) -> Option<Vec<Cell>> {
     let others: Vec<_> = metric
         .drivers

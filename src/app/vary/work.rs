@@ -65,7 +65,7 @@ impl Worker {
     }
 }
 
-/// Exit code of a run that stands; what it fell short of is told.
+/// Exit code of an existing run; what it fell short of is printed.
 pub(in super::super) fn report_result(store: &Store, id: &str) -> Result<ExitCode, AppError> {
     let numbers: Numbers = store.read(id)?;
     if !numbers.reason.is_empty() {

@@ -102,7 +102,7 @@ fn turning_about_the_tip_is_free_if_asked_for() {
 }
 
 #[test]
-fn the_axis_that_stands_in_the_way_is_named() {
+fn the_obstructing_axis_is_named() {
     let mut chain = arm10();
     let q = [0.3, -1.2, 2.2, -1.7, 1.3, 0.8];
     let target = tip_pose(&chain, HERE, &q);
@@ -119,7 +119,7 @@ fn the_axis_that_stands_in_the_way_is_named() {
 }
 
 #[test]
-fn a_pose_out_of_reach_is_told_apart_from_a_limit() {
+fn a_pose_out_of_reach_is_distinguished_from_a_limit() {
     let chain = arm10();
     let target = DPose3::from_translation(DVec3::new(3.0, 0.0, 0.5));
     let start = [0.1, -1.2, 1.4, -1.7, 1.3, 0.8];

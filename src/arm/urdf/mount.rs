@@ -44,7 +44,7 @@ pub(super) fn likely(robot: &Robot) -> Result<Mount, Refusal> {
     for link in by_likelihood(robot, &graph) {
         match tried(link) {
             Ok(mount) => return Ok(mount),
-            // That of the likeliest link is what its user is told.
+            // The message is that of the likeliest link.
             Err(refusal) => drop(refused.get_or_insert(refusal)),
         }
     }

@@ -235,7 +235,7 @@ fn the_line_is_that_of_the_element() {
 }
 
 #[test]
-fn faults_of_xml_are_told_with_the_link_or_joint() {
+fn faults_of_xml_are_reported_with_the_link_or_joint() {
     for (from, to, words) in [
         (
             "<axis xyz=\"0 0 1\"/>",
@@ -286,7 +286,7 @@ fn faults_of_xml_are_told_with_the_link_or_joint() {
 }
 
 #[test]
-fn what_other_programs_put_in_is_noted_by_name_and_changes_nothing() {
+fn what_other_programs_add_is_noted_by_name_and_changes_nothing() {
     let plain = load(&six_axes()).unwrap();
     for (extra, words) in [
         (
@@ -554,7 +554,7 @@ fn a_draft_finds_the_mount_the_masses_and_the_limits() {
 }
 
 #[test]
-fn a_refused_arm_is_told_of_by_its_likeliest_link() {
+fn a_refused_arm_is_reported_by_its_likeliest_link() {
     // The frame `base` of ROS-Industrial stands last in the file.
     let frame = "<joint name=\"b\" type=\"fixed\"><parent link=\"base\"/><child link=\"base_frame\"/></joint><link name=\"base_frame\"/></robot>";
     let four = edited("</robot>", frame)

@@ -370,7 +370,7 @@ fn links_and_joints_named_by_the_user_must_exist() {
 }
 
 #[test]
-fn unreadable_files_are_told_apart() {
+fn unreadable_files_are_distinguished() {
     let missing = load_arm(Path::new("/nowhere/arm.urdf"), &options());
     assert!(matches!(missing, Err(ArmError::Unreadable { .. })));
     for text in ["", "<robot", "\u{0}"] {

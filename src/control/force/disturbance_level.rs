@@ -1,17 +1,17 @@
-//! Estimates of the share of the believed dry friction and of other disturbances of the force: a Kalman filter with two states.
+//! Estimates of the share of the nominal dry friction and of other disturbances of the force: a Kalman filter with two states.
 //!
 //! ```text
 //! y = o - k f + noise,   o and k walk at random
 //! ```
 //!
-//! y measured force less all that the model explains but dry friction [N], f the believed dry friction [N], k its true share [1], o everything else
+//! y measured force less all that the model explains but dry friction [N], f the nominal dry friction [N], k its true share [1], o everything else
 //! [N]. The walk of o is such that the filter follows it with a time constant T_o; that of k, over a time T_k; k begins uncertain by a given share and never
-//! gets more uncertain than that. While the tool slides one way the two cannot be told apart; a reversal tells them.
+//! gets more uncertain than that. While the tool slides one way the two cannot be distinguished; a reversal separates them.
 //! Adaptive friction compensation after Canudas de Wit and Lischinsky 1997; the rest is the disturbance observer's filter (Ohnishi 1987).
 
 /// The load cell's noise that the filter reckons with [N]; only the ratio to the friction matters.
 const NOISE: f64 = 1.0;
-/// Largest share of the believed friction that is taken for possible [1].
+/// Largest share of the nominal friction that is taken for possible [1].
 const LARGEST_SHARE: f64 = 3.0;
 
 /// The filter.
@@ -27,7 +27,7 @@ pub(super) struct DisturbanceLevel {
 }
 
 impl DisturbanceLevel {
-    /// With T_o and T_k [s], k uncertain by a share [1], at a believed Coulomb friction [N].
+    /// With T_o and T_k [s], k uncertain by a share [1], at a nominal Coulomb friction [N].
     pub(super) fn new(times: [f64; 2], uncertainty: f64, coulomb: f64, period: f64) -> Self {
         let walk = |time: f64| {
             let gain = period / (time + period);
@@ -43,7 +43,7 @@ impl DisturbanceLevel {
         }
     }
 
-    /// Takes an unexplained force and the believed dry friction [N].
+    /// Takes an unexplained force and the nominal dry friction [N].
     pub(super) fn update(&mut self, unexplained: f64, friction: f64) {
         let p = &mut self.covariance;
         p[0][0] += self.walk[0];

@@ -7,7 +7,7 @@
 //! p_set = p_d through the inverted lag of the regulator, from its outlet at t + h                 (`regulator_model`)
 //! ```
 //!
-//! F contact force [N], f believed dry friction [N], k its true share [1], b viscous coefficient [N s/m], z bristle deflection [m], v and a speed and
+//! F contact force [N], f nominal dry friction [N], k its true share [1], b viscous coefficient [N s/m], z bristle deflection [m], v and a speed and
 //! acceleration, o whatever is left [N], h the dead time and half a period [s], T_r the response time [s].
 //!
 //! - The dead time: the model runs ahead by it, so the loop does not contain it while the model holds; the load cell's disagreement with the model
@@ -19,7 +19,7 @@
 //! - The path is that of the surface, the stroke less what the contact gives way: the piston's own would answer the force, and compensating friction
 //!   for the motion that the compensation makes is a loop of its own, unstable before the seals slide.
 //!
-//! It knows areas, volumes, orifices, moving mass, the regulator's constants, the believed seals and the contact's stiffness; not the surface's motion.
+//! It knows areas, volumes, orifices, moving mass, the regulator's constants, the nominal seals and the contact's stiffness; not the surface's motion.
 
 use super::chamber_model::ChamberModel;
 use super::disturbance_level::DisturbanceLevel;

@@ -78,9 +78,9 @@ pub struct DisturbancePredictionParameters {
     pub observer_time: f64,
     /// Poles of the filter that gives speed and acceleration [rad/s]; above 0, below half the sampling frequency.
     pub tracking_frequency: f64,
-    /// The seals as they are believed to be.
+    /// The nominal seals.
     pub seals: SealFriction,
-    /// Uncertainty of the believed dry friction, as a share of it [1]; 0 to 1.
+    /// Uncertainty of the nominal dry friction, as a share of it [1]; 0 to 1.
     pub friction_uncertainty: f64,
 }
 

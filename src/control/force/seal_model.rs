@@ -1,4 +1,4 @@
-//! The seals' friction as a controller believes it to be, now and after a motion that is predicted.
+//! The seals' nominal friction as a controller has it, now and after a motion that is predicted.
 //!
 //! The bristles' deflection depends on the path alone (`physics::seal_friction`), so a predicted path gives the coming friction, a reversal included:
 //! x(t + h) - x(t) = v h + a h^2 / 2, in two legs if v + a h changes its sign on the way.
@@ -13,7 +13,7 @@ pub(super) struct SealModel {
 }
 
 impl SealModel {
-    /// Seals as believed, relaxed.
+    /// Nominal seals, relaxed.
     pub(super) fn new(seals: SealFriction) -> Self {
         Self {
             seals,

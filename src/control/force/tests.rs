@@ -10,9 +10,9 @@ const START: f64 = 0.5;
 /// A plant and what its controller takes it for.
 #[derive(Clone, Copy)]
 struct Case {
-    /// Coulomb friction that the controller believes in, of 10 N [N].
+    /// Coulomb friction that is nominal in the controller, of 10 N [N].
     nominal_friction: f64,
-    /// The regulator's time constant over what the controller believes [1].
+    /// The regulator's time constant over the controller's nominal one [1].
     lag_factor: f64,
     sensors: Sensors,
     period: f64,
@@ -142,7 +142,7 @@ fn at_half_a_hertz_only_prediction_beats_what_waits_for_the_dead_time() {
 }
 
 #[test]
-fn the_prediction_stands_what_is_not_known_well() {
+fn the_prediction_withstands_what_is_not_known_well() {
     let cases = [
         Case {
             nominal_friction: 5.0,

@@ -21,7 +21,7 @@ struct Simulated {
     result: Result<Outcome, EvaluateError>,
 }
 
-/// Draws at the chosen design; `done` is told how many are.
+/// Draws at the chosen design; `done` gets how many are.
 pub(in crate::design) fn draw(
     study: &Study,
     scattering: &Scattering,
@@ -50,7 +50,7 @@ pub(in crate::design) fn draw(
     summarise(study, scattering, chosen, &simulated)
 }
 
-/// What a result and quantiles are told of: the objective, then each limited metric once.
+/// What a result and quantiles are given of: the objective, then each limited metric once.
 fn metrics(study: &Study) -> Vec<String> {
     let mut names = vec![study.objective.metric.clone()];
     for limit in &study.limits {

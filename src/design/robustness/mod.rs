@@ -21,7 +21,7 @@ use crate::keys::error::Location;
 pub(super) use check::scattering;
 pub(super) use draws::draw;
 
-/// Shares of the draws at which quantiles are told [1].
+/// Shares of the draws at which quantiles are reported [1].
 const QUANTILES: [f64; 3] = [0.05, 0.5, 0.95];
 /// Probability with which an interval misses.
 const MISSED: f64 = 0.05;

@@ -136,7 +136,7 @@ fn study_objective_and_limits() {
 }
 
 #[test]
-fn a_scenario_that_is_not_there_or_stands_twice() {
+fn a_scenario_that_is_not_there_or_is_given_twice() {
     for (name, words) in [
         (
             "../no_such.toml",

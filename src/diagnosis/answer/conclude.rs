@@ -41,7 +41,7 @@ impl Link {
         }
     }
 
-    /// Where physics without a name would enter that this link alone shows.
+    /// Where a model discrepancy would enter that this link alone shows.
     fn subsystem(self) -> Subsystem {
         match self {
             Self::Regulator => Subsystem::Regulator,
@@ -195,7 +195,7 @@ impl Diagnosis {
         self.far_above_with_names().is_some()
     }
 
-    /// What known effects leave far above the noise, as an effect without a name: of them alone nothing is explained.
+    /// What known effects leave far above the noise, as a model discrepancy: of them alone nothing is explained.
     fn discrepancy_far_above_noise(&self) -> Option<FoundEffect> {
         let channel = self.far_above_with_names()?;
         Some(FoundEffect {

@@ -45,7 +45,7 @@ pub struct Details {
     /// Faults of sensors, logs and clocks, which were taken off before any physics was looked for.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub data_faults: Vec<DataFaultReport>,
-    /// Where recordings differ from the believed model moved within its tolerances.
+    /// Where recordings differ from the nominal model moved within its tolerances.
     pub differences: Vec<Mismatch>,
     /// Residual of each link of the chain, and the variable that explains it.
     pub links: Vec<LinkReport>,
@@ -230,7 +230,7 @@ pub struct ChannelMisfit {
     pub channel: String,
     /// Samples that count.
     pub samples: usize,
-    /// Robust root mean square as believed.
+    /// Robust root mean square of the nominal model's error.
     #[serde(rename = "believed_sigmas")]
     pub nominal_sigmas: f64,
     /// Moved within its tolerances.
@@ -239,7 +239,7 @@ pub struct ChannelMisfit {
     pub improved_sigmas: f64,
     /// With what was found, fitted to the other recordings.
     pub left_out_sigmas: Option<f64>,
-    /// Root mean square of what the believed model leaves, in the column's unit.
+    /// Root mean square of what the nominal model leaves, in the column's unit.
     #[serde(default)]
     #[serde(rename = "believed_rms")]
     pub nominal_rms: f64,
@@ -411,7 +411,7 @@ pub struct RegimeReport {
 pub struct ToleratedNumber {
     /// Dotted key.
     pub key: String,
-    /// As believed.
+    /// The nominal value.
     #[serde(rename = "believed")]
     pub nominal: f64,
     /// As found.
@@ -425,11 +425,11 @@ pub struct PredictionError {
     pub recording: String,
     /// Column.
     pub channel: String,
-    /// Root mean square by the model as it was believed, in the column's unit.
+    /// Root mean square by the nominal model, in the column's unit.
     #[serde(default)]
     #[serde(rename = "believed")]
     pub nominal: f64,
-    /// That by the believed model moved within its tolerances.
+    /// That by the nominal model moved within its tolerances.
     pub before: f64,
     /// That by the improved one.
     pub after: f64,

@@ -141,7 +141,7 @@ pub struct Estimates {
     pub tolerated: Vec<Number>,
     /// Numbers of each effect.
     pub effects: Vec<(&'static Effect, Vec<Number>)>,
-    /// Constants of the formula of a term without a name; empty where it is none.
+    /// Constants of the formula of a model discrepancy; empty where it is none.
     pub formula: Vec<Number>,
     /// Covariance of all that is free, in the fit's coordinates.
     pub covariance: DMatrix<f64>,
@@ -149,7 +149,7 @@ pub struct Estimates {
 
 /// Standard deviation of what is not in the residuals, in a quantity's unit.
 fn allowance(nominal: &PlantParameters, free: &Free, value: f64, sample: f64) -> f64 {
-    // A frequency is told by its phase, whatever the law.
+    // A frequency is determined by its phase, whatever the law.
     if free.quantity.name == "frequency_hz" {
         return 0.0;
     }
@@ -182,7 +182,7 @@ fn at_least(covariance: &mut DMatrix<f64>, variances: &[f64]) {
     }
 }
 
-/// Variance of what a channel of its own has told, in the fit's coordinates; 0 of the others.
+/// Variance of what a channel of its own has determined, in the fit's coordinates; 0 of the others.
 fn settled(fit: &Fit) -> Vec<f64> {
     let of = |(free, value): (&Free, &f64)| match free.prior {
         Prior::Settled { .. } => free.departure_slope(*value).powi(-2),
@@ -222,7 +222,7 @@ fn between_models(nominal: &PlantParameters, ranked: &[Ranked]) -> Vec<f64> {
     best.free.iter().enumerate().map(of).collect()
 }
 
-/// Whether a free quantity is one of the term without a name, which come last.
+/// Whether a free quantity is one of the model discrepancy, which come last.
 fn last_of_term(hypothesis: &Hypothesis, index: usize) -> bool {
     let own = hypothesis.unlisted().map_or(0, Latent::numbers);
     index + own >= hypothesis.fit.free.len()
@@ -399,7 +399,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_at_the_end_of_its_range_is_told_from_one_between() {
+    fn a_number_at_the_end_of_its_range_is_distinguished_from_one_between() {
         // 5 kg to 10 %: a parameter once stood at its tolerance's limit without a word.
         let mass = tolerated(registry::MOVING_MASS.quantity(), 5.0, 0.1);
         let at = |value: f64| Limit::of(&mass, value);

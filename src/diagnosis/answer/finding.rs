@@ -23,7 +23,7 @@ use crate::diagnosis::search::tried::Tried;
 use crate::diagnosis::settings::Settings;
 use crate::plant::{CHANNELS, Channel, PlantParameters};
 
-/// The believed model, moved within its tolerances as far as recordings that it may not explain allow.
+/// The nominal model, moved within its tolerances as far as recordings that it may not explain allow.
 #[derive(Debug)]
 pub struct Baseline {
     /// The description.
@@ -41,9 +41,9 @@ pub struct Baseline {
 pub struct Unseen {
     /// The channel.
     pub channel: Channel,
-    /// Of the believed model as it stands in the rig file.
+    /// Of the nominal model as it stands in the rig file.
     pub nominal: ErrorSize,
-    /// Of the believed model, moved within its tolerances.
+    /// Of the nominal model, moved within its tolerances.
     pub before: ErrorSize,
     /// Of the best explanation.
     pub after: ErrorSize,
@@ -77,7 +77,7 @@ impl ErrorSize {
 pub struct Diagnosis {
     /// Thresholds that it was made with.
     pub settings: Settings,
-    /// The rig as believed.
+    /// The nominal rig.
     pub nominal: PlantParameters,
     /// Its tolerated quantities.
     pub tolerated: Vec<Free>,
@@ -109,15 +109,15 @@ pub struct Diagnosis {
     pub estimates: Estimates,
     /// Half of a 90 % band of each channel's prediction, in standard deviations of noise and numbers together [1].
     pub half_widths: [f64; CHANNELS.len()],
-    /// Shape of its term without a name, if it has one.
+    /// Shape of its model discrepancy, if it has one.
     pub shape: Option<Shape>,
     /// Where its effects act.
     pub mismatch: Vec<Interval>,
     /// Largest departure of the best from the recordings; none where nothing was measured.
     pub largest: Option<Largest>,
-    /// Prediction of the believed model, as it stands in the rig file.
+    /// Prediction of the nominal model, as it stands in the rig file.
     pub as_nominal: Prediction,
-    /// The believed model, moved within its tolerances.
+    /// The nominal model, moved within its tolerances.
     pub baseline: Baseline,
     /// Name of the recording to be predicted, and errors of its prediction where it has measured columns.
     pub unseen: Option<(String, Vec<Unseen>)>,

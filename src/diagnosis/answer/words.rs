@@ -261,7 +261,7 @@ mod tests {
             said("cylinder.moving_mass_kg"),
             ("moving mass".to_owned(), "kg", 1.0)
         );
-        // A joint's friction was once told in millimetres.
+        // A joint's friction was once reported in millimetres.
         assert_eq!(said("friction_n_m"), ("friction".to_owned(), "N m", 1.0));
         // 1 N/m^1.5 over 1000^1.5 mm^1.5.
         assert!((said("stiffness_n_per_m15").2 * 1000f64.powf(1.5) - 1.0).abs() < 1e-12);

@@ -169,7 +169,7 @@ fn a_zero_that_jumps_is_found_with_its_time() {
 }
 
 #[test]
-fn a_channel_that_stands_still_or_is_held_is_found_and_its_copies_are_set_aside() {
+fn a_channel_that_is_constant_or_held_is_found_and_its_copies_are_set_aside() {
     let faults = read(|place, time, r| {
         let kept = r[2][500];
         for (value, t) in r[2].iter_mut().zip(time) {
@@ -301,7 +301,7 @@ fn what_lasts_is_put_back_into_what_a_sensor_reads() {
 }
 
 #[test]
-fn a_stretch_that_stands_in_two_places_is_a_copy() {
+fn a_stretch_that_occurs_twice_is_a_copy() {
     let faults = read(|place, _, r| {
         if place == 1 {
             r[2].copy_within(200..300, 700);

@@ -1,4 +1,4 @@
-//! Comparison for the eye: each recording as measured, as believed and with what was found; and what each link lacks, against the variable that says when.
+//! Comparison for the eye: each recording as measured, by the nominal and by the improved model; and what each link lacks, against the variable that explains it best.
 //!
 //! Plain data: the pictures, the recording for the viewer and the page are made of it, and it is what stands in comparison.parquet and balance.parquet.
 
@@ -49,9 +49,9 @@ pub struct ComparedChannel {
     pub channel: Channel,
     /// Reading, without what was set aside.
     pub measured: Vec<f64>,
-    /// By the model as it was believed; of a contact flange the desired force.
+    /// By the nominal model; of a contact flange the desired force.
     pub nominal: Vec<f64>,
-    /// By the believed model moved within its tolerances; all NaN where it cannot be simulated.
+    /// By the nominal model moved within its tolerances; all NaN where it cannot be simulated.
     pub tolerated: Vec<f64>,
     /// By the improved model; all NaN where it cannot be simulated.
     pub improved: Vec<f64>,
@@ -73,7 +73,7 @@ pub struct Balance {
     pub variable: String,
     /// Its values [SI], one per sample; NaN where it is not known.
     pub values: Vec<f64>,
-    /// Residual of the believed model, moved within its tolerances [SI]; NaN where it does not show.
+    /// Residual of the nominal model, moved within its tolerances [SI]; NaN where it does not show.
     pub before: Vec<f64>,
     /// Residual of the improved model [SI].
     pub after: Vec<f64>,

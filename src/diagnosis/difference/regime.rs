@@ -48,7 +48,7 @@ pub struct Regime {
     pub correlation_ratio: f64,
 }
 
-/// Variables that tell when a mismatch appears, the most telling first. `mismatch` has a value per sample, recording by recording.
+/// Variables that tell when a mismatch appears, the most informative first. `mismatch` has a value per sample, recording by recording.
 pub fn regimes(
     evidence: &Evidence,
     plant: &PlantParameters,

@@ -6,7 +6,7 @@
 //!
 //! H information with priors, P that of the priors alone, c derivatives of a residual r by the fit's coordinates, w its robust weight. Where a law is a
 //! little wrong its residuals have the same sign for a while, and a block of them counts as one. Where they are white, B is H less P and V is H^-1; less
-//! than that is never believed.
+//! than that is never trusted.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -233,7 +233,7 @@ mod tests {
                 "{deviation}, {expected}"
             );
         }
-        // One that tells nothing of it leaves it unknown.
+        // One that carries no information on it leaves it unknown.
         let mut column = vec![0.2; count / 2];
         column.extend(vec![0.0; count / 2]);
         let blind = predictive(&evidence, &fit(vec![0.0; count], column, 0.0), 0).unwrap();

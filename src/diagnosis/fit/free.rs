@@ -1,4 +1,4 @@
-//! A quantity that a fit may move, and what is believed of it before the recordings are looked at.
+//! A quantity that a fit may move, and its prior before the recordings are looked at.
 
 use crate::diagnosis::recordings::device::Device;
 use crate::diagnosis::recordings::subject::Subject;
@@ -21,7 +21,7 @@ pub enum Prior {
     },
     /// Anything between the bounds.
     Flat,
-    /// Held where it stands: a channel of its own has told it, with a standard deviation in the quantity's unit.
+    /// Held at its value: a channel of its own has determined it, with a standard deviation in the quantity's unit.
     Settled {
         /// Standard deviation.
         deviation: f64,

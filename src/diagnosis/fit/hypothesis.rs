@@ -13,18 +13,18 @@ pub struct Hypothesis {
     pub effects: Vec<&'static Effect>,
     /// The fit: tolerated quantities first, then the effects' in order, then phases of what is periodic in each recording.
     pub fit: Fit,
-    /// Variables on which a term without a name depends, the surest first; empty where there is none. The term is in the description, its
+    /// Variables on which a model discrepancy depends, the surest first; empty where there is none. The term is in the description, its
     /// coefficients come last among what is free.
     pub depends_on: Vec<&'static str>,
 }
 
 impl Hypothesis {
-    /// The term without a name, if there is one.
+    /// The model discrepancy, if there is one.
     pub fn unlisted(&self) -> Option<&Latent> {
         self.fit.prediction.plant.latent.as_ref()
     }
 
-    /// The formula of the term without a name, if it is one.
+    /// The formula of the model discrepancy, if it is one.
     pub fn formula(&self) -> Option<&Formula> {
         self.unlisted()?.formula()
     }
@@ -42,7 +42,7 @@ impl Hypothesis {
         names
     }
 
-    /// Names of the effects as people read them, the term without a name last.
+    /// Names of the effects as people read them, the model discrepancy last.
     pub fn effect_display_names(&self) -> Vec<String> {
         let effects = self.effects.iter();
         let unnamed = self.unlisted().map(|_| UNLISTED.to_owned());
@@ -52,12 +52,12 @@ impl Hypothesis {
             .collect()
     }
 
-    /// Whether the believed model is all that it takes.
+    /// Whether the nominal model is all that it takes.
     pub fn finds_nothing(&self) -> bool {
         self.effects.is_empty() && self.unlisted().is_none()
     }
 
-    /// Number of the free quantities that are tolerated ones; the effects', phases and those of a term without a name follow.
+    /// Number of the free quantities that are tolerated ones; the effects', phases and those of a model discrepancy follow.
     pub fn tolerated(&self, nominal: &PlantParameters) -> usize {
         let own: usize = self
             .effects

@@ -20,7 +20,7 @@ pub struct FlangeDiagnosis {
     pub unseen: Option<(String, RunMetrics)>,
     /// Moving mass [kg].
     pub mass: f64,
-    /// Time constant with which the contact force is believed to follow the desired one [s].
+    /// Time constant with which the contact force nominally follows the desired one [s].
     pub time_constant: f64,
     /// Standard deviation of the force sensor's noise [N].
     pub noise: f64,
@@ -30,7 +30,7 @@ pub struct FlangeDiagnosis {
 
 /// Multiples of the noise from which a force is there [1].
 const THERE: f64 = 5.0;
-/// Times as long as believed from which settling is a finding [1].
+/// Times its nominal duration from which settling is a finding [1].
 const LATE: f64 = 1.5;
 
 impl FlangeDiagnosis {
@@ -46,7 +46,7 @@ impl FlangeDiagnosis {
             .collect()
     }
 
-    /// Residuals of the runs from the believed first order, by name; nothing of a flange that is as believed.
+    /// Residuals of the runs from the nominal first order, by name; nothing of a nominal flange.
     #[must_use]
     pub fn missing(&self) -> Vec<&'static str> {
         let limit = THERE * self.noise;
@@ -294,7 +294,7 @@ impl FlangeDiagnosis {
         let [z, z_low, z_high] = self.impedance();
         let [k, low, high] = [z, z_low, z_high].map(|z| z.max(0.0).powi(2) / self.mass * 1e-3);
         format!(
-            "The tool of {} kg meets the surface and the force peaks at {z:.0} N for each m/s of approach ({z_low:.0} to {z_high:.0}) over what was desired before, as on a spring of {k:.0} N/mm ({low:.0} to {high:.0}). The believed first order has no impact. The intervals are those of 95 %, from how the runs differ.",
+            "The tool of {} kg meets the surface and the force peaks at {z:.0} N for each m/s of approach ({z_low:.0} to {z_high:.0}) over what was desired before, as on a spring of {k:.0} N/mm ({low:.0} to {high:.0}). The nominal first order has no impact. The intervals are those of 95 %, from how the runs differ.",
             self.mass
         )
     }
@@ -401,7 +401,7 @@ mod tests {
     use super::super::Run;
     use super::*;
 
-    /// A flange that is as believed: the force rises first order from contact on.
+    /// A nominal flange: the force rises first order from contact on.
     fn as_nominal() -> Run {
         let time: Vec<f64> = (0..6000).map(|i| -0.5 + 8e-4 * f64::from(i)).collect();
         // Noise of a computer: what matters is that it is there.
@@ -449,7 +449,7 @@ mod tests {
     }
 
     #[test]
-    fn a_flange_that_is_as_believed_lacks_nothing_and_one_that_is_off_lacks_that_alone() {
+    fn a_nominal_flange_lacks_nothing_and_one_that_is_off_lacks_that_alone() {
         let mut run = as_nominal();
         let answer = of(&run).answer(0.0);
         assert_eq!(

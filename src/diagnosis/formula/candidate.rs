@@ -288,7 +288,7 @@ fn free_constant(
             (Coordinate::Linear(0.5 * size), [least, MOST * size])
         }
         Role::Place => {
-            // Inputs are held over a sample: a place in time is told by several.
+            // Inputs are held over a sample: a place in time is determined by several.
             let share = match curve.variable {
                 Variable::Time => 0.4,
                 _ => 0.1,

@@ -1,4 +1,4 @@
-//! Physics without a name: where no known effect explains the recordings, a latent term inside the simulator, at each port and over each variable in
+//! A model discrepancy: where no known effect explains the recordings, a latent term inside the simulator, at each port and over each variable in
 //! turn; the evidence says which.
 //!
 //! ```text
@@ -41,9 +41,9 @@ const ROUGH_ITERATIONS: usize = 8;
 const IN_FULL: usize = 2;
 /// Iterations of the full fit.
 const FULL_ITERATIONS: usize = 25;
-/// Standard deviation that is believed of a term's level or of a wave, in the port's scale [1].
+/// Standard deviation of the prior of a term's level or of a wave, in the port's scale [1].
 const NOMINAL: f64 = 20.0;
-/// Standard deviation that is believed of the rise from one knot to the next, in the port's scale [1].
+/// Standard deviation of the prior of the rise from one knot to the next, in the port's scale [1].
 const RISES_BY: f64 = 2.0;
 /// Shares of its value where it is surest below which a term does not act [1]: both are tried, and the fit decides.
 const NARROW: [f64; 2] = [0.1, 0.3];
@@ -53,7 +53,7 @@ const WIDE: f64 = 0.6;
 const HOPELESS: f64 = 1.5;
 /// Share of what another explanation leaves that a curve may leave for a formula to be asked for [1].
 const PROMISING: f64 = 0.5;
-/// Share of the gain of the best term within which another variable is not told apart [1].
+/// Share of the gain of the best term within which another variable is not distinguished [1].
 const ALIKE: f64 = 0.05;
 
 /// Variables named at most.
@@ -402,7 +402,7 @@ impl Search<'_> {
         found
     }
 
-    /// Curves that are told apart by what they leave of recordings that were left out, fitted in full, best first.
+    /// Curves that are distinguished by what they leave of recordings that were left out, fitted in full, best first.
     fn curves_in_full(
         &self,
         base: &Hypothesis,

@@ -1,4 +1,4 @@
-//! Physics without a name as a formula: port x form x variables. Curves fitted at the ports point at it; each candidate is then fitted inside the simulator
+//! A model discrepancy as a formula: port x form x variables. Curves fitted at the ports point at it; each candidate is then fitted inside the simulator
 //! as any effect is.
 //!
 //! ```text

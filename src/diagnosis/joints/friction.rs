@@ -6,7 +6,7 @@
 //!
 //! C is what the contact force takes of the drive along its normal, across it, and by the tool's friction: a ball that stands off a sharp edge by a tenth of its
 //! radius is pressed on another normal, by a tenth of the force, and a load cell's gain and the tool's friction are known roughly. What a drive does beside
-//! that while the tool rides tells nothing of its friction. (Partialling out: Frisch, Waugh, Econometrica 1, 1933.)
+//! that while the tool rides carries no information on its friction. (Partialling out: Frisch, Waugh, Econometrica 1, 1933.)
 //! Ordinary least squares; what is left is not white, so that its samples count for as many as are independent of each other (first-order autocorrelation:
 //! Bartlett, J. R. Stat. Soc. 8, 1946). A drive's torque is known through a torque constant, and its load through a model: neither better than the belief's
 //! tolerance. Nor is it known better than a current converter resolves of what the drive is rated for: a joint that carries nothing shows friction of a
@@ -55,7 +55,7 @@ pub struct JointFriction {
     pub friction: f64,
     /// Its standard deviation [N m].
     pub deviation: f64,
-    /// The believed value [N m].
+    /// The nominal value [N m].
     pub nominal: f64,
     /// Readings that count as independent.
     pub count: f64,
@@ -63,11 +63,11 @@ pub struct JointFriction {
 
 /// Speed v_0 [rad/s].
 const STILL: f64 = 1e-3;
-/// Uncertainty of a joint's friction that is as believed, relative to it [1]: no data sheet says more.
+/// Uncertainty of a joint's nominal friction, relative to it [1]: no data sheet says more.
 const KNOWN: f64 = 0.03;
 /// Uncertainty of a drive's torque, relative to what it is rated for [1]: ten bits of a current converter.
 const RESOLVED: f64 = 1e-3;
-/// Share of a column beside those before it below which it tells nothing new [1].
+/// Share of a column beside those before it below which it carries no new information [1].
 const NOTHING_NEW: f64 = 1e-6;
 /// Sum of squares of sat(v) about its mean below which a joint hardly changed its speed, and nothing can be said.
 const LEAST_CHANGE: f64 = 5.0;
@@ -179,7 +179,7 @@ fn disagreement(recordings: &[Vec<[f64; 2]>], friction: f64) -> f64 {
 }
 
 impl JointFriction {
-    /// Whether it differs from what is believed, by Schwarz's criterion, as for any effect.
+    /// Whether it differs from its nominal value, by Schwarz's criterion, as for any effect.
     #[must_use]
     pub fn differs(&self) -> bool {
         let gain = ((self.friction - self.nominal) / self.deviation).powi(2);
@@ -226,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn a_joint_that_rubs_is_found_and_sized_and_one_as_believed_is_left_alone() {
+    fn a_joint_that_rubs_is_found_and_sized_and_a_nominal_one_is_left_alone() {
         let found = joint_friction(1, &[drive(14.0)], 1.0, 0.005).unwrap();
         assert!((found.friction - 14.0).abs() < 0.3, "{found:?}");
         assert!(found.differs());

@@ -28,7 +28,7 @@ pub struct ServoLink {
     pub bandwidth: f64,
     /// Its standard deviation [Hz].
     pub deviation: f64,
-    /// Its gain over the believed one, as a sum of squares [1].
+    /// Its gain over the nominal one, as a sum of squares [1].
     pub gain: f64,
     /// Readings.
     pub count: usize,
@@ -146,7 +146,7 @@ pub fn pushed_servo_link(axes: &[Axes], noise: f64, nominal: f64, servo: f64) ->
 }
 
 impl ServoLink {
-    /// Whether the encoders show another bandwidth than the believed one, by Schwarz's criterion, as for any effect.
+    /// Whether the encoders show another bandwidth than the nominal one, by Schwarz's criterion, as for any effect.
     #[must_use]
     pub fn differs(&self) -> bool {
         self.weight * self.gain > (self.count as f64).ln() + Settings::DEFAULT.look_elsewhere
@@ -200,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slow_servo_is_found_and_sized_and_a_believed_one_is_left_alone() {
+    fn a_slow_servo_is_found_and_sized_and_a_nominal_one_is_left_alone() {
         let slow = servo_link(&axes(14.0), NOISE, 25.0).unwrap();
         assert!(slow.differs());
         assert!(

@@ -1,4 +1,4 @@
-//! Cleaning of a recording before it is believed, and its quality: outliers, lost ones, gaps, jitter, noise.
+//! Cleaning of a recording before it is used, and its quality: outliers, lost ones, gaps, jitter, noise.
 //!
 //! A reading is wild only if it stands alone and what it says of the rig is denied by another sensor (`wild`); impacts are seen by more than one.
 

@@ -1,4 +1,4 @@
-//! Input of a diagnosis: a rig as believed, what is tolerated of it, and recordings of what it did.
+//! Input of a diagnosis: a nominal rig, what is tolerated of it, and recordings of what it did.
 
 use super::clean::{Cleaning, clean};
 use super::device::Device;
@@ -13,7 +13,7 @@ use crate::plant::{CHANNELS, Channel, DeviceParts, PlantParameters, Quantity};
 use crate::recording::csv::plausible_range;
 use crate::stats::median;
 
-/// Times by which the noise of a recording must differ from the sheet's to be believed in its place [1].
+/// Times by which the noise of a recording must differ from the sheet's to take its place [1].
 pub(in crate::diagnosis) const OTHER_NOISE: f64 = 1.5;
 
 /// A recording by its name.
@@ -30,7 +30,7 @@ pub struct NamedRecording {
 /// A case to be diagnosed.
 #[derive(Debug, Clone)]
 pub struct DiagnosisInput {
-    /// The rig as believed.
+    /// The nominal rig.
     pub nominal: PlantParameters,
     /// Its tolerated quantities.
     pub tolerated: Vec<Free>,
@@ -77,7 +77,7 @@ impl DiagnosisInput {
     }
 }
 
-/// A number that is believed to lie within a relative tolerance of a value, any part of it being as likely: the normal distribution of that spread.
+/// A number that lies within a relative tolerance of a value, any part of it being as likely: the normal distribution of that spread.
 #[must_use]
 pub fn tolerated(quantity: Quantity, value: f64, tolerance: f64) -> Free {
     let half = (value * tolerance).abs();
@@ -121,7 +121,7 @@ pub fn of_link(parts: DeviceParts, noise: f64, drift: f64) -> Vec<Free> {
     found
 }
 
-/// Recordings made fit to be believed.
+/// Recordings made fit to be used.
 #[derive(Debug)]
 pub struct Prepared {
     /// The evidence in them.
@@ -225,7 +225,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_sheet_is_believed_unless_the_recordings_clearly_differ() {
+    fn the_data_sheet_holds_unless_the_recordings_clearly_differ() {
         let shown = |noise: f64| Cleaning {
             noise: vec![Some(noise), None, Some(0.0), Some(1.2)],
             ..Cleaning::default()

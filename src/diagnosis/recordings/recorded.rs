@@ -25,7 +25,7 @@ pub const COLUMNS: [&str; CHANNELS.len()] = [
     "acceleration_m_per_s2",
 ];
 
-/// Samples below which a recording tells nothing of a rig.
+/// Samples below which a recording carries no information on a rig.
 const LEAST_SAMPLES: usize = 50;
 /// Times that a sensor's noise may be smaller or larger than its sheet says; units differ by more.
 const UNIT_FACTOR: f64 = 200.0;

@@ -284,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn its_channels_are_told_apart_by_how_far_they_are_moved() {
+    fn its_channels_are_distinguished_by_how_far_they_are_moved() {
         let evidence = fills(0);
         let [truth, moved] = [TRUTH, [0.4, 1.9]].map(|model| evidence.predict(&model, false, None));
         let pairs = moved.residuals.iter().zip(&truth.residuals);

@@ -212,7 +212,7 @@ fn headline(diagnosis: &RemovalDiagnosis) -> String {
         None if !diagnosis.effects.is_empty() => {
             "what the law of removal lacks is not settled: nothing is sure".to_owned()
         }
-        None => "nothing is missing from the believed law of removal".to_owned(),
+        None => "nothing is missing from the nominal law of removal".to_owned(),
         Some((last, [])) => format!("the law of removal lacks {last}"),
         Some((last, others)) => {
             format!("the law of removal lacks {} and {last}", others.join(", "))
@@ -236,14 +236,14 @@ fn sentence(diagnosis: &RemovalDiagnosis, value: &Value, is_feed: bool) -> Strin
     let nominal = diagnosis.nominal.number(value.deviation);
     let exponent = |what: &str| {
         format!(
-            "The removed volume grows as {what} to the power {}, believed {}.",
+            "The removed volume grows as {what} to the power {}, nominal {}.",
             number(value.value),
             significant(nominal, 3)
         )
     };
     match value.deviation {
         Deviation::Coefficient => format!(
-            "At the reference settings a new tool takes off {} mm3, believed {}.",
+            "At the reference settings a new tool takes off {} mm3, nominal {}.",
             number(value.value.map(|v| v * 1e9)),
             significant(nominal * 1e9, 3)
         ),
@@ -256,7 +256,7 @@ fn sentence(diagnosis: &RemovalDiagnosis, value: &Value, is_feed: bool) -> Strin
         Deviation::Time if is_feed => {
             let [value, low, high] = value.value;
             format!(
-                "The removed volume goes as the feed to the power {}, believed {}.",
+                "The removed volume goes as the feed to the power {}, nominal {}.",
                 number([-value, -high, -low]),
                 significant(-nominal, 3)
             )
@@ -264,12 +264,12 @@ fn sentence(diagnosis: &RemovalDiagnosis, value: &Value, is_feed: bool) -> Strin
         Deviation::Time => exponent("the grinding time"),
         Deviation::Area => exponent("the contact area"),
         Deviation::Threshold => format!(
-            "Below a force of {} N nothing comes off, believed {}.",
+            "Below a force of {} N nothing comes off, nominal {}.",
             number(value.value),
             significant(nominal, 3)
         ),
         Deviation::Sag => format!(
-            "The cutting speed falls by {} % per newton of force, believed {}.",
+            "The cutting speed falls by {} % per newton of force, nominal {}.",
             number(value.value.map(|v| 100.0 * v)),
             significant(100.0 * nominal, 3)
         ),
@@ -290,7 +290,7 @@ fn errors(left: &Left) -> String {
 }
 
 fn left(diagnosis: &RemovalDiagnosis) -> Vec<String> {
-    let mut text = format!("The believed law leaves {}", errors(&diagnosis.before));
+    let mut text = format!("The nominal law leaves {}", errors(&diagnosis.before));
     text += &if diagnosis.effects.is_empty() {
         ".".to_owned()
     } else {
@@ -336,9 +336,9 @@ fn not_needed(diagnosis: &RemovalDiagnosis, is_feed: bool) -> Vec<String> {
                     ends.swap(1, 2);
                 }
                 let finding = if vague {
-                    "cannot be told well"
+                    "cannot be determined well"
                 } else {
-                    "need not differ from what is believed"
+                    "need not differ from its nominal value"
                 };
                 format!(
                     "The exponent of the {quantity} {finding}: left free it is {}.",
@@ -365,7 +365,7 @@ fn not_needed(diagnosis: &RemovalDiagnosis, is_feed: bool) -> Vec<String> {
                 )
             }
             Deviation::Coefficient => format!(
-                "The amount at the reference settings is as believed: left free it is {} mm3.",
+                "The amount at the reference settings is nominal: left free it is {} mm3.",
                 number(value.value.map(|v| v * 1e9))
             ),
         }
@@ -412,7 +412,7 @@ fn unseen(diagnosis: &RemovalDiagnosis, rows: &[TableRow]) -> Vec<String> {
         ),
     };
     vec![format!(
-        "Of {} that were kept back it is {} off, the believed law {}.{nothing}",
+        "Of {} that were kept back it is {} off, the nominal law {}.{nothing}",
         counted(after.rows, "row"),
         errors(&after),
         errors(&before)

@@ -12,7 +12,7 @@ const FLOOR: f64 = 1e-6;
 /// A law fitted.
 #[derive(Debug, Clone)]
 pub(super) struct Fit {
-    /// Free numbers, the coefficient not among them where the believed law states none.
+    /// Free numbers, the coefficient not among them where the nominal law states none.
     pub free: Vec<Deviation>,
     /// The law with its numbers.
     pub law: TableLaw,
@@ -109,7 +109,7 @@ fn along(
             low = left;
         }
     }
-    // The end of the line is believed as it is.
+    // The end of the line is taken as it is.
     let middle = at(f64::midpoint(low, high))?;
     Some(match at(0.0) {
         Some(zero) if zero.0 <= middle.0 => zero.1,

@@ -42,12 +42,12 @@ pub struct Reference {
 }
 
 listed! {
-    /// A number of the law in which it may deviate from what is believed.
+    /// A number of the law in which it may deviate from its nominal value.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
     pub enum Deviation: 8,
     /// Name in diagnosis.json.
     name: &'static str {
-        /// Volume at the reference settings, where the believed law states it.
+        /// Volume at the reference settings, where the nominal law states it.
         Coefficient = "removal_coefficient",
         /// Exponent of the force.
         Force = "removal_force_exponent",

@@ -1,10 +1,10 @@
-//! Which deviations from the believed law a table shows, which it rules out, and which it cannot tell.
+//! Which deviations from the nominal law a table shows, which it rules out, and which it cannot tell.
 
 use super::fit::{Fit, fit, rms};
 use super::law::{Deviation, TableLaw, TableRow};
 use crate::stats::{chance_beyond, student_95, student_exceeded};
 
-/// Chance that a table of a believed law that is right names anything at all.
+/// Chance that a table of a nominal law that is right names anything at all.
 pub(super) const FALSE_ALARM: f64 = 0.05;
 /// Chance that the largest of all rows' scatter has it set aside.
 const SET_ASIDE: f64 = 0.01;
@@ -75,7 +75,7 @@ impl Left {
 /// Diagnosis of a table.
 #[derive(Debug, Clone)]
 pub struct RemovalDiagnosis {
-    /// The believed law, its coefficient fitted where it states none.
+    /// The nominal law, its coefficient fitted where it states none.
     pub nominal: TableLaw,
     /// The law with what was found.
     pub found: TableLaw,
@@ -103,7 +103,7 @@ pub struct RemovalDiagnosis {
     pub incomplete: Vec<TableRow>,
 }
 
-/// Diagnoses a table; none if it has too few rows to fit the believed law and judge it.
+/// Diagnoses a table; none if it has too few rows to fit the nominal law and judge it.
 #[must_use]
 pub fn diagnose_table(
     table: &[TableRow],
@@ -263,7 +263,7 @@ fn set_aside(
 /// Every set of deviations fitted: forms of the force's law times all others.
 fn models(rows: &[TableRow], nominal: &TableLaw, candidates: &[Deviation]) -> Vec<Fit> {
     use Deviation::{Force, Sag, Threshold};
-    // A threshold beside a sag is hardly told from an exponent in any table.
+    // A threshold beside a sag can hardly be distinguished from an exponent in any table.
     let forms: [&[Deviation]; 5] = [&[], &[Force], &[Threshold], &[Sag], &[Force, Threshold]];
     let of_force = [Force, Threshold, Sag];
     let others: Vec<Deviation> = candidates

@@ -154,7 +154,7 @@ fn a_row_that_is_wrong_by_a_factor_is_set_aside_and_hides_nothing() {
 }
 
 #[test]
-fn a_setting_that_does_not_vary_is_not_told() {
+fn a_setting_that_does_not_vary_is_not_reported() {
     let mut rows = table(|f, v, n, _| 2e-13 * f * n / v, 3);
     for row in &mut rows {
         row.volume *= 10.0 / row.speed;

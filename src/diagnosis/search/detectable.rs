@@ -22,7 +22,7 @@ use rayon::prelude::*;
 const NINE_IN_TEN: f64 = 1.282;
 /// Steps in size, at most.
 const MOST_STEPS: usize = 5;
-/// Share of a size to which it is found, and up to which one is told [1].
+/// Share of a size to which it is found, and up to which one is reported [1].
 const NEAR: [f64; 2] = [0.05, 0.3];
 /// Standard deviations by which noise may hold an effect [1].
 const CHANCE: f64 = 2.0;

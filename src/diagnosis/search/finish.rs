@@ -54,7 +54,7 @@ impl Search<'_> {
             .filter(plainer)
             .map(|h| self.refit(h, Refit::FULL))
             .collect();
-        // Of a part of the device all such variants are fitted and told (`super::ruled_out`).
+        // Of a part of the device all such variants are fitted and reported (`super::ruled_out`).
         let own = match self.nominal.parts {
             DeviceParts::Whole => self.shown.len()..best.effects.len(),
             _ => 0..0,
@@ -131,7 +131,7 @@ impl Search<'_> {
     }
 
     /// Fits in full the explanations that a rough fit cannot rule out beside the best one: nothing is said of a close rival by a rough fit. Where the best
-    /// explains too little, a term without a name is to stand in its place, and these are no rivals. The best one with an effect more is none either: such
+    /// explains too little, a model discrepancy is to stand in its place, and these are no rivals. The best one with an effect more is none either: such
     /// must also predict what was left out, which [`Self::add_small`] asks of it.
     pub(super) fn add_close(
         &self,
@@ -206,7 +206,7 @@ impl Search<'_> {
         }
     }
 
-    /// Takes effects out of the best hypothesis as long as it scores better without, the last one too: a rough fit of the believed model may have come to
+    /// Takes effects out of the best hypothesis as long as it scores better without, the last one too: a rough fit of the nominal model may have come to
     /// rest where an effect of no size let a full one go on. Beside a model error an effect must also gain more than what all of them leave: less may
     /// be a part of that error.
     pub(in crate::diagnosis) fn eliminate(

@@ -109,7 +109,7 @@ impl Search<'_> {
         Vec::new()
     }
 
-    /// Where no known effects explain the mismatch to the noise, puts a term without a name first if it does so, beside fewer of them or none; where they do
+    /// Where no known effects explain the mismatch to the noise, puts a model discrepancy first if it does so, beside fewer of them or none; where they do
     /// not explain it at all, if it explains more.
     pub(super) fn add_unlisted(
         &self,
@@ -160,7 +160,7 @@ impl Search<'_> {
         }
     }
 
-    /// Puts a known effect in the place of the best formula where it leaves noise alone too: a rough fit of the believed model may have been bent so far
+    /// Puts a known effect in the place of the best formula where it leaves noise alone too: a rough fit of the nominal model may have been bent so far
     /// that no known effect promised anything beside it, and where the formula has put what is tolerated one does. A law of the list is the likelier one.
     pub(in crate::diagnosis) fn put_named_first(
         &self,

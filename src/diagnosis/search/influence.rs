@@ -160,7 +160,7 @@ mod tests {
 
     /// The fit of an endlessly stiff joint stood for nothing missing.
     #[test]
-    fn the_nominal_model_stands_beside_what_hardly_moves_anything() {
+    fn the_nominal_model_is_kept_beside_what_hardly_moves_anything() {
         let nominal_of = |truth: &PlantParameters, stiffness: f64| {
             let evidence = evidence_of(truth, steps());
             let search = search(&evidence);

@@ -1,6 +1,6 @@
 //! Numbers of the regulator from its own channel, where what is behind it is not explained to the noise.
 //!
-//! The outlet pressure is told by the set pressure alone. A joint fit of a model that lacks something behind the outlet bends the regulator's numbers for
+//! The outlet pressure follows from the set pressure alone. A joint fit of a model that lacks something behind the outlet bends the regulator's numbers for
 //! the sake of channels that it cannot explain anyway. So the feedback from there is cut: the tolerated numbers that the outlet depends on are fitted to its
 //! channel alone and held, the others then to all (modularisation: Liu, Bayarri and Berger, Bayesian Analysis 4, 2009; cutting feedback: Plummer,
 //! Statistics and Computing 25, 2015).

@@ -8,13 +8,13 @@ use crate::effects::Effect;
 /// Steps of a diagnosis, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Step {
-    /// The believed model is fitted within its tolerances.
+    /// The nominal model is fitted within its tolerances.
     Baseline,
     /// Explanations are fitted roughly.
     RoughFit,
     /// The leading ones are fitted in full.
     FullFit,
-    /// The best ones are varied: fewer effects, plainer laws, close rivals, terms without a name.
+    /// The best ones are varied: fewer effects, plainer laws, close rivals, model discrepancies.
     Variation,
     /// The mismatch is located.
     Localisation,

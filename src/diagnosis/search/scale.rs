@@ -11,7 +11,7 @@ use crate::diagnosis::recordings::evidence::Evidence;
 const SPREAD: f64 = 6.0;
 /// Share of the mismatch that the idealisation of a law may leave [1].
 const IDEALISATION_LEFT: f64 = 0.002;
-/// Share of what is explained already below which one more effect is not told from the idealisation of the others [1].
+/// Share of what is explained already below which one more effect is not distinguished from the idealisation of the others [1].
 pub(in crate::diagnosis) const IMMATERIAL: f64 = 1e-3;
 
 /// Share of the mismatch beyond which what is left is physics of its own [1].
@@ -27,7 +27,7 @@ pub(in crate::diagnosis) struct Scale {
     count: f64,
     /// Sum of squares that noise alone has, roughly [1].
     noise: f64,
-    /// Cost of the believed model within its tolerances, roughly and in full [1].
+    /// Cost of the nominal model within its tolerances, roughly and in full [1].
     rough: f64,
     full: f64,
 }

@@ -257,7 +257,7 @@ impl Search<'_> {
             (kept.into_iter().zip(columns)).partition(|(f, _)| is_of_term(f));
         let (phases, kept): (Vec<_>, Vec<_>) = kept.into_iter().partition(|(f, _)| is_phase(f));
         let (mut free, frozen): (Vec<Free>, Vec<Vec<f64>>) = kept.into_iter().unzip();
-        // Phases and the numbers of a term without a name come last (`Hypothesis::tolerated`), and are not frozen: they are few.
+        // Phases and the numbers of a model discrepancy come last (`Hypothesis::tolerated`), and are not frozen: they are few.
         let (own, own_phases) = new.split_at(start.values.len());
         free.extend(own);
         free.extend(phases.into_iter().map(|(f, _)| f));

@@ -187,16 +187,16 @@ mod tests {
         let signal = |values: Vec<f64>| {
             Series::new("a", time.clone(), values, Role::Measured, Stroke::Plain)
         };
-        let (told, count) = chart(vec![
+        let (data, count) = chart(vec![
             signal(vec![1.0, 2.0, 3.0]),
             signal(vec![4.0, 5.0, f64::NAN]),
         ])
         .data(100);
         assert_eq!(count, [3, 3]);
-        assert_eq!(unpacked(&told["at"]), [0.0, 0.5, 1.0]);
-        assert_eq!(unpacked(&told["series"][0]["values"]), [1.0, 2.0, 3.0]);
-        assert!(unpacked(&told["series"][1]["values"])[2].is_nan());
-        assert_eq!(told["series"][0]["joined"], false);
+        assert_eq!(unpacked(&data["at"]), [0.0, 0.5, 1.0]);
+        assert_eq!(unpacked(&data["series"][0]["values"]), [1.0, 2.0, 3.0]);
+        assert!(unpacked(&data["series"][1]["values"])[2].is_nan());
+        assert_eq!(data["series"][0]["joined"], false);
     }
 
     #[test]
@@ -216,18 +216,18 @@ mod tests {
             Role::Measured,
             Stroke::Points,
         );
-        let (told, _) = chart(vec![band, cloud]).data(100);
-        assert_eq!(told["areas"], json!([[0, 1]]));
+        let (data, _) = chart(vec![band, cloud]).data(100);
+        assert_eq!(data["areas"], json!([[0, 1]]));
         let known = |column: usize| -> Vec<f32> {
-            let mut values = unpacked(&told["series"][column]["values"]);
+            let mut values = unpacked(&data["series"][column]["values"]);
             values.retain(|value| !value.is_nan());
             values
         };
         assert_eq!(known(0), [-1.0, -2.0, -3.0]);
         assert_eq!(known(1), [1.0, 2.0, 3.0]);
         assert_eq!(known(2), [8.0, 7.0]);
-        assert!(unpacked(&told["at"]).is_sorted());
-        assert_eq!(told["series"][2]["joined"], true);
+        assert!(unpacked(&data["at"]).is_sorted());
+        assert_eq!(data["series"][2]["joined"], true);
     }
     #[test]
     fn a_thinned_cloud_is_as_wide_as_the_whole_one() {
@@ -249,7 +249,7 @@ mod tests {
             )
         };
         let both = chart(vec![cloud("before", 0.61), cloud("after", 0.83)]);
-        let (told, [kept, of]) = both.data(1333);
+        let (data, [kept, of]) = both.data(1333);
         assert!(of == 4000 && kept.abs_diff(1333) < 20, "{kept} of {of}");
         let spread = |values: &[f64]| {
             let count = values.len() as f64;
@@ -257,7 +257,7 @@ mod tests {
             (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / count).sqrt()
         };
         for (which, seed) in [(0, 0.61), (1, 0.83)] {
-            let thinned = unpacked(&told["series"][which]["values"]);
+            let thinned = unpacked(&data["series"][which]["values"]);
             let thinned: Vec<f64> = thinned.into_iter().map(f64::from).collect();
             let share = spread(&thinned) / spread(&noise(seed));
             assert!((share - 1.0).abs() < 0.05, "{share}");

@@ -266,17 +266,17 @@ mod tests {
         let (_, rest) = text
             .split_once("<script type=\"application/json\">")
             .unwrap();
-        let (told, _) = rest.split_once("</script>").unwrap();
-        let told: serde_json::Value = serde_json::from_str(told).unwrap();
-        assert_eq!(told["series"][0]["label"], ends_it);
-        assert_eq!(told["group"], hides_its_end);
+        let (data, _) = rest.split_once("</script>").unwrap();
+        let data: serde_json::Value = serde_json::from_str(data).unwrap();
+        assert_eq!(data["series"][0]["label"], ends_it);
+        assert_eq!(data["group"], hides_its_end);
         let fetched = ["src=\"http", "href=\"http", "url(http", "@import"];
         assert!(fetched.iter().all(|way| !text.contains(way)));
         assert_eq!(text, html(&page));
     }
 
     #[test]
-    fn an_interval_stands_where_its_numbers_are() {
+    fn an_interval_is_drawn_where_its_numbers_are() {
         let drawn = interval([0.0, 2.0, 3.0, 4.0, 10.0]).into_string();
         assert!(drawn.contains("left:20.00%;width:20.00%") && drawn.contains("left:30.00%"));
     }

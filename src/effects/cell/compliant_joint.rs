@@ -1,4 +1,4 @@
-//! A joint gives way between its motor and its link, more than believed. The encoder sits on the motor.
+//! A joint gives way between its motor and its link, more than nominal. The encoder sits on the motor.
 //!
 //! ```text
 //! theta_link = theta_motor + (J^T F - M(q) q'')/K
@@ -13,11 +13,11 @@
 //! Confused with:
 //! - contact_stiffness_error: the same in every posture.
 //! - joint_encoder_offset: the same at every force, and where nothing touches.
-//! - compliant_joint of another joint: told apart by their levers: those of several leans and places.
+//! - compliant_joint of another joint: distinguished by their levers, at several leans and positions.
 
 use super::*;
 
-/// Stiffness range of a joint that is believed rigid [N m/rad].
+/// Stiffness range of a joint that is nominal rigid [N m/rad].
 const RIGID: [f64; 2] = [1e3, 1e8];
 
 /// Of which joint is to be said.

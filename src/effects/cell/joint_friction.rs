@@ -1,4 +1,4 @@
-//! A joint rubs more than believed, or less. Bearings and gears, dry.
+//! A joint has more friction than nominal, or less. Bearings and gears, dry.
 //!
 //! ```text
 //! tau = tau_frictionless + F sat(q'/v_0)

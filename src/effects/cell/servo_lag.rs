@@ -1,4 +1,4 @@
-//! The joints' servos follow their commands at another bandwidth than believed. All of them alike.
+//! The joints' servos follow their commands at a bandwidth off its nominal value. All of them alike.
 //!
 //! ```text
 //! q'' = w^2 (u - q) - 2 w q',   w = 2 pi f

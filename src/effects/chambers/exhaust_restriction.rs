@@ -1,4 +1,4 @@
-//! Air leaves through another orifice than believed. A clogged or missing silencer.
+//! Air leaves through an orifice off its nominal area. A clogged or missing silencer.
 //!
 //! ```text
 //! m_dot = A C p_u / sqrt(R T) f(p_d / p_u)

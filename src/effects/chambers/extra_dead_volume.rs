@@ -1,4 +1,4 @@
-//! The chambers' dead volume is another one than believed. Fittings, ports and short lines behind the valve.
+//! The chambers' dead volume is off its nominal value. Fittings, ports and short lines behind the valve.
 //!
 //! ```text
 //! V_1 = A_1 x + V_d,   V_2 = A_2 (L - x) + V_d

@@ -1,4 +1,4 @@
-//! Air enters through another orifice than believed. A pinched hose, a half open valve, another fitting.
+//! Air enters through an orifice off its nominal area. A pinched hose, a half open valve, another fitting.
 //!
 //! ```text
 //! m_dot = A C p_u / sqrt(R T) f(p_d / p_u)
@@ -11,7 +11,7 @@
 //! Signature: The force follows the regulator's outlet later or earlier, in both directions; nothing at rest.
 //!
 //! Confused with:
-//! - extra_dead_volume: the product of both sets the time of filling: told apart where a stroke changes the volume.
+//! - extra_dead_volume: the product of both sets the time of filling: distinguished where a stroke changes the volume.
 //! - hose_volume: of second order: the chamber starts flat after a step.
 //! - heat_transfer: creeps after the filling.
 

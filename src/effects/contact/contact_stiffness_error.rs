@@ -1,4 +1,4 @@
-//! Tool, part or fixture is softer or stiffer than believed.
+//! Tool, part or fixture is softer or stiffer than nominal.
 //!
 //! ```text
 //! F = max(0, k d + c d')

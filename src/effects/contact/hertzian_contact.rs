@@ -23,7 +23,7 @@ pub const EFFECT: Effect = Effect {
     parameters: |_, _| vec![reported(HERTZ_STIFFNESS.named("stiffness_n_per_m15"), Logarithmic, [1e5, 1e10])],
     usual: |p, _| vec![p.contact.stiffness_at(USUAL_FORCE).powf(1.5) / USUAL_FORCE.sqrt()],
     starts: |c, _| {
-        // As stiff as what is believed at a force that such a device is used at [N].
+        // As stiff as the nominal contact at a force that such a device is used at [N].
         let k = STIFFNESS.get(c.plant);
         let d = 120.0 / k;
         let a = 120.0 / d.powf(1.5);

@@ -61,7 +61,7 @@ fn waves(clues: &Clues<'_>, of_tool: bool) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Force at which an elastic contact is as stiff as it is believed to be [N].
+/// Force at which an elastic contact has its nominal stiffness [N].
 const USUAL_FORCE: f64 = 150.0;
 
 #[cfg(test)]

@@ -10,9 +10,9 @@
 //! Signature: The pressure at which the piston leaves its stop, and the contact force at any pressure, are off by the same force.
 //!
 //! Confused with:
-//! - force_sensor_bias_drift: shows with nothing touched, and the piston moves as believed.
+//! - force_sensor_bias_drift: shows with nothing touched, and the piston's motion is nominal.
 //! - regulator_gain_error: grows with the pressure.
-//! - moving_mass_error: its weight is such a force, but comes with inertia: told apart while accelerating.
+//! - moving_mass_error: its weight is such a force, but comes with inertia: distinguished while accelerating.
 
 use super::*;
 

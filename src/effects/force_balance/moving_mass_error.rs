@@ -1,4 +1,4 @@
-//! The moving mass is another one than believed. Another tool, a part left off, a hose that hangs on.
+//! The moving mass is off its nominal value. Another tool, a part left off, a hose that hangs on.
 //!
 //! ```text
 //! m a = F
@@ -10,7 +10,7 @@
 //! Signature: Accelerations are off in proportion, and where the axis is not level the weight is too.
 //!
 //! Confused with:
-//! - inertial_crosstalk: the load cell alone sees it; the motion is as believed.
+//! - inertial_crosstalk: the load cell alone sees it; the motion is nominal.
 //! - axial_force_offset: a force without inertia: accelerations in free motion are off by the same, not in proportion.
 
 use super::*;

@@ -55,7 +55,7 @@ pub fn candidates(parts: DeviceParts) -> Vec<&'static Effect> {
             effects
         }
         DeviceParts::Regulator => of(&[Subsystem::Regulator, Subsystem::Sensors]),
-        // What it has to show is told from its impacts, not by a search (`diagnosis::flange`).
+        // Its parameters are found from its impacts, not by a search (`diagnosis::flange`).
         DeviceParts::ContactFlange => Vec::new(),
     }
 }

@@ -1,4 +1,4 @@
-//! The regulator holds another share of its set pressure than believed. Its set value's scale is off, or it droops.
+//! The regulator holds a share of its set pressure off the nominal one. Its set value's scale is off, or it droops.
 //!
 //! ```text
 //! p = K p_set        at rest

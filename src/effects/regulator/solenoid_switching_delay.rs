@@ -1,4 +1,4 @@
-//! The 5/2 valve switches later than it is told to. Its coil builds up its field, its pilot fills.
+//! The 5/2 valve switches later than commanded. Its coil builds up its field, its pilot fills.
 //!
 //! ```text
 //! position(t) = command(t - theta)

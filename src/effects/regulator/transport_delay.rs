@@ -7,7 +7,7 @@
 //! t time [s], p_set set pressure and p_acted that acted on [Pa gauge], theta dead time [s].
 //! Source: Dead time of process control (Smith 1957).
 //!
-//! Signature: The outlet does nothing for theta after each change, then answers as believed.
+//! Signature: The outlet does nothing for theta after each change, then its response is nominal.
 //!
 //! Confused with:
 //! - regulator_second_order: the outlet starts flat, but at once.

@@ -7,7 +7,7 @@
 //! F_m reading and F contact force [N], g gain [1].
 //! Source: Doebelin, Measurement Systems.
 //!
-//! Signature: The reading is off in proportion to the force, while outlet, stroke and acceleration are as believed.
+//! Signature: The reading is off in proportion to the force, while outlet, stroke and acceleration are nominal.
 //!
 //! Confused with:
 //! - regulator_gain_error: the outlet is off as well.

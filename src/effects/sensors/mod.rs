@@ -1,4 +1,4 @@
-//! Effects of the sensors: the rig does as believed, its readings do not.
+//! Effects of the sensors: the rig is nominal, its readings are not.
 
 pub mod channel_time_offset;
 pub mod force_sensor_bias_drift;

@@ -7,7 +7,7 @@
 //! x_m reading and x stroke [m], g gain [1].
 //! Source: Doebelin, Measurement Systems.
 //!
-//! Signature: The reading is off in proportion to the stroke, at the far stop most, while force and accelerations are as believed.
+//! Signature: The reading is off in proportion to the stroke, at the far stop most, while force and accelerations are nominal.
 //!
 //! Confused with:
 //! - surface_offset: in contact alone, and the same at every stroke.

@@ -114,7 +114,7 @@ fn score(samples: &[Sample], data: &DeviceParameters, given: &EstimatorParameter
     score
 }
 
-/// Devices spread within `parameters.tolerances`, estimators told `told`.
+/// Devices spread within `parameters.tolerances`, estimators given `given`.
 fn ensemble(
     data: &DeviceParameters,
     parameters: &EstimatorParameters,
@@ -264,7 +264,7 @@ fn devices_of_all_classes_are_covered() {
 }
 
 #[test]
-fn told_a_quarter_of_the_tolerances_the_band_fails_to_cover() {
+fn given_a_quarter_of_the_tolerances_the_band_fails_to_cover() {
     let data = device();
     let drawn = parameters(&data, Tolerances::default());
     let mut given = drawn.clone();

@@ -18,7 +18,7 @@ pub(in crate::import) struct Glance {
     pub stamped: bool,
     /// Messages whose stamp is zero, and messages.
     pub zero_stamps: [usize; 2],
-    /// What is to be told of it, each a part of a sentence.
+    /// Remarks on it, each a part of a sentence.
     pub notes: Vec<String>,
 }
 
@@ -69,7 +69,7 @@ pub(in crate::import) fn glance(path: &Path) -> Result<Glance, ImportError> {
         let Some(topic) = topics.iter_mut().find(of_message) else {
             return Ok(());
         };
-        // What does not fit its definition is told when it is imported.
+        // What does not fit its definition is reported when it is imported.
         let plain = message.plain().unwrap_or_default();
         let Ok(read) = topic.definition.decode(&plain) else {
             return Ok(());
@@ -128,7 +128,7 @@ impl Topic {
     }
 }
 
-/// What is to be told of a bag's files.
+/// Remarks on a bag's files.
 fn notes(stores: &Stores, scan: &Scan) -> Vec<String> {
     let mut notes = Vec::new();
     if !stores.missing.is_empty() {

@@ -85,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_message_has_all_that_stands_in_it() {
+    fn every_message_has_all_that_is_in_it() {
         for standard in STANDARDS {
             let text = definition(standard.name).unwrap();
             let read = Definition::parse(standard.name, &text).unwrap();

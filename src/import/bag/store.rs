@@ -27,7 +27,7 @@ pub(super) struct Stores {
     pub missing: Vec<String>,
     /// Messages that its metadata count.
     counted: Option<u64>,
-    /// What is to be told of its files.
+    /// Remarks on its files.
     pub notes: Vec<Remark>,
 }
 

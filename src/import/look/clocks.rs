@@ -21,7 +21,7 @@ pub(super) enum Clocks {
     One,
     /// Several, each with the columns behind it.
     Each(Vec<Group>),
-    /// Several, and it is not told which is whose.
+    /// Several, and it is unknown which is whose.
     Open(String),
 }
 

@@ -122,7 +122,7 @@ fn rate(label: &Label, text: &str, next: &str) -> Option<f64> {
     let (number, behind) = text.split_at(end.unwrap_or(text.len()));
     let decimal = match numbers::seen(number) {
         Seen::Decimal(mark) => mark,
-        // Of `1.000` it is not told whether it is a thousand.
+        // Of `1.000` it is unknown whether it is a thousand.
         Seen::Plain => '.',
         _ => return None,
     };

@@ -7,7 +7,7 @@ use crate::import::map::{Column, Pressure};
 use crate::import::stamps;
 use crate::import::units::LogUnit;
 
-/// A map's text with what is left to be told by its owner.
+/// A map's text with what is left to its owner.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Draft {
     /// The map, commented.
@@ -153,7 +153,7 @@ pub(super) struct Looked {
     pub columns: Vec<Seen>,
     /// Whether the times are those at which messages were logged, not their stamps.
     pub time: TimeSeen,
-    /// Keys of its form that cannot be told, and the question.
+    /// Keys of its form that cannot be determined, and the question.
     pub asked: Vec<(&'static str, String)>,
     /// What was left out of it and where, a sentence each.
     pub notes: Vec<String>,

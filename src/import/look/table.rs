@@ -6,7 +6,7 @@ use crate::import::numbers;
 use crate::import::text::{Record, elements, fields};
 use crate::import::{stamps, words};
 
-/// Separators in the order in which they are believed where several fit.
+/// Separators in the order in which they are taken where several fit.
 const SEPARATORS: [(Separator, &str); 5] = [
     (Separator::Character(b'\t'), "tab"),
     (Separator::Character(b';'), ";"),

@@ -328,7 +328,7 @@ fn names_line(header: &[Vec<String>], count: usize) -> Option<usize> {
     best.map(|(line, _)| line)
 }
 
-/// Why names cannot be told to their columns, where they are fewer or more: the index of a data frame has no name, a name may hold what divides fields.
+/// Why names cannot be matched to their columns, where they are fewer or more: the index of a data frame has no name, a name may hold what divides fields.
 fn misaligned(names: &[String], kinds: &[Kind], line: usize) -> Option<String> {
     const REMARKS: [&str; 7] = [
         "comment",
@@ -350,7 +350,7 @@ fn misaligned(names: &[String], kinds: &[Kind], line: usize) -> Option<String> {
     };
     (!fits).then(|| {
         format!(
-            "Line {} names {filled} columns, and rows have {columns}: which name is whose cannot be told, so that columns have numbers here.",
+            "Line {} names {filled} columns, and rows have {columns}: which name is whose cannot be determined, so that columns have numbers here.",
             line + 1
         )
     })

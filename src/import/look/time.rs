@@ -50,7 +50,7 @@ pub(super) struct TimeChoice {
     pub is_blocked: bool,
     /// Places of the columns that it takes.
     pub places: Vec<usize>,
-    /// Samples a second that it makes, where that is told [Hz].
+    /// Samples a second that it makes, where that is stated [Hz].
     pub rate: f64,
 }
 
@@ -435,12 +435,12 @@ impl Numbers<'_> {
             .or(self.by_size.filter(|other| other.zero != 0.0))
             .filter(|other| (other.factor / unit.factor - 1.0).abs() > NEAR);
         if let Some(other) = other {
-            let as_told = match self.by_stamps {
+            let as_given = match self.by_stamps {
                 Some(_) => "as other stamps of the log tell",
                 None => "of the size of such stamps",
             };
             let first = shown(self.rise.ends[0]);
-            let why = format!("its name says {}, but {first} is {as_told}", unit.name);
+            let why = format!("its name says {}, but {first} is {as_given}", unit.name);
             set_unit(choice, other, &self.rise, &why);
             choice.because.is_certain = false;
             return;
@@ -510,7 +510,7 @@ impl Numbers<'_> {
     /// A counter of samples, with the rate that the header says.
     fn as_counter(&self, choice: &mut TimeChoice) {
         match self.said {
-            // Of a counter with other steps it is not told whether the rate is that of rows or of counts.
+            // Of a counter with other steps it is unknown whether the rate is that of rows or of counts.
             Some(said) if self.rise.step == 1.0 => {
                 choice.sample_rate = Some(said.rate);
                 choice.rate = said.rate;

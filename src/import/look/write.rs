@@ -20,7 +20,7 @@ const COMMENT: usize = 44;
 const DRIVING: [(&str, &str, &str); 3] = [
     (
         schema::SET_PRESSURE_GAUGE,
-        "what the regulator is told",
+        "set pressure of the regulator",
         "value = 3.0\n# unit = \"bar\"\n# pressure = \"gauge\"",
     ),
     (
@@ -35,7 +35,7 @@ const DRIVING: [(&str, &str, &str); 3] = [
     ),
 ];
 
-/// A text that grows, with what could not be told.
+/// A text that grows, with what could not be determined.
 #[derive(Default)]
 struct Page {
     text: String,

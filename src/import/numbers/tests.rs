@@ -74,7 +74,7 @@ fn a_field_tells_its_marks_unless_they_may_be_either() {
 }
 
 #[test]
-fn what_to_write_is_told_by_the_whole_column() {
+fn what_to_write_is_decided_by_the_whole_column() {
     let says = |field: &str, marks: Marks, column: &[&str]| {
         let fields = column
             .iter()

@@ -44,7 +44,7 @@ fn one_moment_in_many_forms() {
 }
 
 #[test]
-fn the_order_of_day_and_month_is_told_by_all_dates_together() {
+fn the_order_of_day_and_month_is_decided_by_all_dates_together() {
     let british = of(&["05/03/2024 14:02:03.123", "13/03/2024 00:00:00"], None);
     assert_eq!(british.unwrap()[0], KNOWN);
     let american = of(&["03/05/2024 14:02:03.123", "03/13/2024 00:00:00"], None);
@@ -132,7 +132,7 @@ fn times_of_two_numbers_are_minutes_and_seconds_where_they_have_decimals_and_ask
             seconds * NANOSECONDS
         );
     }
-    // No hour has the number 75, and no minute of the day needs to be told beside others with seconds.
+    // No hour has the number 75, and no minute of the day needs to be stated beside others with seconds.
     assert_eq!(
         of(&["75:10", "75:11"], None).unwrap()[0],
         4_510 * NANOSECONDS

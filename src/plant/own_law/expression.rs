@@ -303,7 +303,7 @@ fn named(input: &mut Input<'_>) -> ModalResult<Node> {
             node.span = whole;
             return Ok(node);
         }
-        // Told as a name that is not known, with its place.
+        // Reported as a name that is not known, with its location.
         _ => Kind::Name(format!("{name}(..) of {count}")),
     };
     Ok(Node { span: whole, kind })
@@ -513,7 +513,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_read_is_told_with_its_place() {
+    fn what_cannot_be_read_is_reported_with_its_location() {
         for (text, part, said) in [
             ("-c * mox(v, 0)", "mox(v, 0)", "no function mox(..) of 2"),
             ("-c * max(v)", "max(v)", "no function max(..) of 1"),
@@ -567,7 +567,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_finite_is_told_with_its_place() {
+    fn what_is_not_finite_is_reported_with_its_location() {
         let expression = Expression::read("c + ln(x - t) * 2", &NAMES).unwrap();
         let error = expression.check_finite(&[0.0, 0.0, 0.0, 1.0]).unwrap_err();
         assert_eq!(error.span, 4..13);

@@ -1,4 +1,4 @@
-//! A contact flange as its owner believes it to be: the contact force follows the desired one, first order.
+//! A contact flange by its nominal values: the contact force follows the desired one, first order.
 //!
 //! ```text
 //! tau dF/dt = F_d - F

@@ -1,4 +1,4 @@
-//! A term without a name.
+//! A model discrepancy.
 
 use super::{ANY, Number, numbers};
 use crate::plant::{Basis, PlantParameters};

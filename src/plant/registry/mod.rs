@@ -150,7 +150,7 @@ mod tests {
     use std::collections::BTreeSet;
 
     #[test]
-    fn names_and_keys_are_told_apart_and_ranges_are_some() {
+    fn names_and_keys_are_unique_and_ranges_are_some() {
         let mut names = BTreeSet::new();
         for number in all() {
             let [low, high] = number.range;

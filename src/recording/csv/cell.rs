@@ -141,7 +141,7 @@ fn columns(joints: usize) -> Vec<Column> {
     columns
 }
 
-/// Where the arm was told to go is known at each sample, or nothing can be said of it.
+/// The arm's command is known at each sample, or nothing can be said of it.
 fn check_given(
     path: &Path,
     column: &Column,

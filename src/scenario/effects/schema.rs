@@ -15,7 +15,7 @@ pub(in super::super) fn schema<'e>(known: impl Iterator<Item = &'e Effect>) -> V
     let number = json!({ "type": "number" });
     json!({
         "type": "array",
-        "description": "Tables [[effect]]: physics beyond what is believed, of the catalogue (`idc effects`) with all its numbers, or as an expression.",
+        "description": "Tables [[effect]]: physics beyond the nominal model, of the catalogue (`idc effects`) with all its numbers, or as an expression.",
         "items": {
             "type": "object",
             "properties": {

@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_law_is_told_with_its_place() {
+    fn what_is_no_law_is_reported_with_its_location() {
         for (line, said) in [
             ("-c * v; c = 1..2", "there is no port"),
             (

@@ -1,4 +1,4 @@
-//! An improved rig file: the believed one with the values that a diagnosis found, in its own order and with its own comments, and the physics found below them.
+//! An improved rig file: the nominal one with the values that a diagnosis found, in its own order and with its own comments, and the physics found below them.
 
 use toml_edit::{DocumentMut, InlineTable, Item, Value};
 
@@ -15,7 +15,7 @@ pub struct Improved<'a> {
     pub tolerated: &'a [(&'a str, f64, f64, f64)],
     /// All effects of the improved rig.
     pub effects: &'a [WrittenEffect<'a>],
-    /// Its term without a name.
+    /// Its model discrepancy.
     pub unnamed: Option<&'a Latent>,
     /// How sure all of that is.
     pub known: Option<&'a Known>,

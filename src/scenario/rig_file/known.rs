@@ -56,7 +56,7 @@ pub(super) struct KnownKeys {
     pub covered: BTreeMap<String, Vec<f64>>,
 }
 
-/// Name of a coefficient of a term without a name.
+/// Name of a coefficient of a model discrepancy.
 #[must_use]
 pub fn coefficient_name(index: usize) -> String {
     format!("latent.{index}")
@@ -159,7 +159,7 @@ fn quantity_of(name: &str, plant: &PlantParameters, effects: &[PresentEffect]) -
     Some(parameters.find(|p| p.quantity.name == own)?.quantity)
 }
 
-/// The number of a term without a name that a fit moves.
+/// The number of a model discrepancy that a fit moves.
 #[must_use]
 pub fn of_term(latent: &Latent, index: usize) -> Quantity {
     match latent.basis {

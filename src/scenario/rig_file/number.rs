@@ -13,7 +13,7 @@ use crate::keys::document::NUMBER_OR_TABLE;
 pub(super) struct Number {
     /// Value.
     pub value: f64,
-    /// Half the width of what is believed, relative to the value.
+    /// Half the width of its tolerance, relative to the value.
     pub tolerance: Option<f64>,
     /// Ends of the interval in which it lies.
     pub low: Option<f64>,

@@ -38,7 +38,7 @@ pub(super) const SENSOR_KEYS: [(&str, [f64; 2]); 5] = [
     ("sensors.acceleration_m_per_s2", [1e-4, 100.0]),
 ];
 
-/// Drift of the pressure sensor, one standard deviation, of which only a part of the device may be told: its key with its plausible range.
+/// Drift of the pressure sensor, one standard deviation, which is reported of parts of the device alone: its key with its plausible range.
 pub(super) const DRIFT: (&str, [f64; 2]) =
     ("sensors.regulator_pressure_drift_pa_per_s", [0.0, 1e4]);
 

@@ -9,7 +9,7 @@ use crate::flange::{CoveredRuns, FLANGE_NUMBERS, FittedFlange, FlangeModel, Read
 use crate::plant::{Basis, ContactLaw, Latent, Port, SensorErrors, Variable};
 
 /// A rig file as its owner writes it.
-pub(crate) const RIG: &str = r#"# The device as its owner believes it to be.
+pub(crate) const RIG: &str = r#"# The device by its nominal values.
 schema = 1
 
 [cylinder]
@@ -82,7 +82,7 @@ fn refused(from: &str, to: &str, says: &str) {
 }
 
 #[test]
-fn a_believed_rig_is_what_its_file_says_and_nothing_besides() {
+fn a_nominal_rig_is_what_its_file_says_and_nothing_besides() {
     let rig = read(RIG);
     let device = &rig.plant.device;
     assert_eq!(device.cylinder_count, 2);
@@ -452,7 +452,7 @@ fn an_improved_file_reads_back_as_the_rig_that_was_found() {
 }
 
 #[test]
-fn an_improved_file_differs_from_the_believed_one_by_the_diagnosis_alone() {
+fn an_improved_file_differs_from_the_nominal_one_by_the_diagnosis_alone() {
     let rig = read(RIG);
     let friction = WrittenEffect {
         law: None,
@@ -531,7 +531,7 @@ fn terms() -> [Latent; 3] {
 }
 
 #[test]
-fn a_term_without_a_name_reads_back_as_it_was_found() {
+fn a_model_discrepancy_reads_back_as_it_was_found() {
     let rig = read(RIG);
     for term in terms() {
         let text = improved_text(

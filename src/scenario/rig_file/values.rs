@@ -22,7 +22,7 @@ pub struct Tolerance {
     pub quantity: Quantity,
     /// Its value [SI].
     pub value: f64,
-    /// Half the width of what is believed, relative to the value [1].
+    /// Half the width of its tolerance, relative to the value [1].
     pub tolerance: f64,
 }
 
@@ -151,7 +151,7 @@ fn exact(
     checked(section, key, number.value, range)
 }
 
-/// Relative half-width of what is believed of a number, whose table is `section`; 0 for an exact one.
+/// Relative half-width of the tolerance of a number, whose table is `section`; 0 for an exact one.
 pub(super) fn tolerance(section: &Section<'_>, number: &Number) -> Result<f64, ScenarioError> {
     let value = number.value;
     if let Some(tolerance) = number.tolerance
@@ -204,7 +204,7 @@ pub(super) fn check_together(
     Ok(())
 }
 
-/// Rate [Hz] and noise in the order of the channels; infinite for a channel that the rig has no sensor of: it tells nothing.
+/// Rate [Hz] and noise in the order of the channels; infinite for a channel that the rig has no sensor of: it carries no information.
 pub(super) fn sensors(
     document: &Document<'_>,
     keys: &RigKeys,
@@ -220,7 +220,7 @@ pub(super) fn sensors(
             Some(output) => PLACES[index] == Some(output),
         };
         if !is_asked && !keys.sensors.contains_key(key) {
-            // A part of the device may be told of no other sensor; its noise then does not count.
+            // A part of the device may have no other sensor; its noise then does not count.
             *value = if output.is_some() { 1.0 } else { *value };
             continue;
         }
@@ -288,7 +288,7 @@ pub(super) fn shares(document: &Document<'_>, keys: SharesKeys) -> Result<Shares
     Ok(Shares(shares))
 }
 
-/// The force that a contact flange is told before contact, and how it grows to the desired one after it.
+/// The force commanded of a contact flange before contact, and how it grows to the desired one after it.
 #[derive(Debug, Clone)]
 pub struct RecordingForceRamp {
     /// Name of the recording, or a pattern with a star.

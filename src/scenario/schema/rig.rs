@@ -43,7 +43,7 @@ pub fn schema() -> Value {
     );
     json!({
         "$schema": DIALECT,
-        "title": "A rig file of idc: a device, its contact and its sensors as their owner believes them to be, in SI",
+        "title": "A rig file of idc: a device, its contact and its sensors by their nominal values, in SI",
         "type": "object",
         "properties": tables,
         "required": ["schema"],
@@ -74,7 +74,7 @@ fn number(text: &str, range: Option<[f64; 2]>) -> Value {
                         "type": "number",
                         "minimum": 0.0,
                         "exclusiveMaximum": 1.0,
-                        "description": "Half the width of what is believed, as a share of the value.",
+                        "description": "Half the width of its tolerance, as a share of the value.",
                     },
                     "low": { "type": "number" },
                     "high": { "type": "number" },

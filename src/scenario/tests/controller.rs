@@ -108,7 +108,7 @@ fn misuse_is_refused_by_place_and_key() {
         (
             "[controller]\nkind = 'disturbance_prediction'\nfriction_n = 9\nstatic_friction_n = 8",
             "17:1",
-            "`controller.static_friction_n` is 8 N, expected at least the sliding friction that is believed, 9 N",
+            "`controller.static_friction_n` is 8 N, expected at least the nominal sliding friction, 9 N",
         ),
         (
             "[controller]\nintegral_gain = 3",
@@ -144,7 +144,7 @@ fn a_controller_without_a_force_to_control_is_refused() {
 }
 
 #[test]
-fn a_force_beyond_what_the_regulator_can_be_told_is_refused() {
+fn a_force_beyond_the_set_range_of_the_regulator_is_refused() {
     let force = |force: &str, more: &str| {
         let text = replaced(
             &pressing(""),

@@ -23,7 +23,7 @@ fn shipped() -> Vec<String> {
 }
 
 #[test]
-fn every_scenario_loads_says_what_it_shows_and_stands_in_the_readme() {
+fn every_scenario_loads_says_what_it_shows_and_is_in_the_readme() {
     let readme = std::fs::read_to_string(scenarios().join("README.md")).unwrap();
     let names = shipped();
     for expected in [
@@ -211,7 +211,7 @@ fn the_device_model_is_the_device_of_the_issue() {
 }
 
 #[test]
-fn what_a_scenario_gives_stands_before_what_makes_its_device_ideal() {
+fn what_a_scenario_gives_precedes_what_makes_its_device_ideal() {
     let with = |lines: &str| {
         let (before, after) = MINIMAL.split_once("[workpiece]").unwrap();
         let AnyScenario::Cell(cell) = read_any(&format!("{before}{lines}\n[workpiece]{after}"))?

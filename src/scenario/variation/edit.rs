@@ -315,7 +315,7 @@ at_s = 1
     }
 
     #[test]
-    fn a_value_is_put_where_its_key_stands_and_nothing_else_changes() {
+    fn a_value_is_written_at_its_key_and_nothing_else_changes() {
         for (key, text, from, to) in [
             ("process.force_n", "30", "force_n = 150 #", "force_n = 30 #"),
             (
@@ -336,7 +336,7 @@ at_s = 1
     }
 
     #[test]
-    fn an_effect_is_told_by_its_name_and_joint() {
+    fn an_effect_is_identified_by_its_name_and_joint() {
         let mut document: DocumentMut = TEXT.parse().unwrap();
         let mut put = |key: &str, value: f64| {
             KeyValue::number(key, value).apply(&mut document).unwrap();

@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn an_axis_holds_its_values_and_stands_without_any() {
+    fn an_axis_holds_its_values_and_exists_without_any() {
         let axis = Axis::around([2.0, f64::NAN, -2.0].into_iter());
         assert!(axis.low < -2.0 && axis.high > 2.0);
         let empty = Axis::around(std::iter::empty());

@@ -108,7 +108,7 @@ fn sheet_panel(index: usize, sheet: &Sheet, linked: bool) -> Panel {
     let mut rows = Vec::new();
     if !sheet.lanes.is_empty() {
         let lanes = sheet::lanes_entity(&entity);
-        let name = "Where the recording differs from the believed model";
+        let name = "Where the recording differs from the nominal model";
         // Of the height of all plots, whatever their number.
         let share = (0.08 + 0.055 * sheet.lanes.len() as f32) * sheet.rows.len() as f32;
         rows.push((share, plain_view(ViewKind::StateTimeline, name, &lanes)));

@@ -35,7 +35,7 @@ fn board() -> Board {
             horizontal: "speed [mm/s]".to_owned(),
             vertical: "lacking [N]".to_owned(),
             groups: vec![CloudGroup {
-                label: "as believed".to_owned(),
+                label: "nominal".to_owned(),
                 role: BoardRole::Nominal,
                 points: vec![[0.0, 1.0], [2.0, -1.0]],
                 joined: false,
@@ -85,6 +85,6 @@ fn lines_lanes_and_clouds_are_there_and_bytes_repeat() {
     assert!(
         entities
             .into_iter()
-            .any(|entity| entity == "/balance_1/as-believed")
+            .any(|entity| entity == "/balance_1/nominal")
     );
 }

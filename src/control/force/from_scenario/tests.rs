@@ -48,7 +48,7 @@ fn limits(message: &str) -> Vec<f64> {
 }
 
 #[test]
-fn the_limit_that_is_told_is_stable_and_little_more_is_not() {
+fn the_reported_limit_is_stable_and_little_more_is_not() {
     let message = built(proportional_integral(50.0, 400.0))
         .unwrap_err()
         .to_string();

@@ -123,7 +123,7 @@ fn lead_errors(response_time: f64, period: f64, factor: f64, late: f64) -> [f64;
 }
 
 #[test]
-fn a_lead_just_slower_than_the_limit_stands_the_stated_misses_and_a_quicker_one_does_not() {
+fn a_lead_just_slower_than_the_limit_withstands_the_stated_misses_and_a_quicker_one_does_not() {
     for period in PERIODS {
         let mut parameters = super::super::DisturbancePredictionParameters::tuned(&device(0.0));
         parameters.response_time = 1e-4;

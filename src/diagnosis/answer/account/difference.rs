@@ -1,4 +1,4 @@
-//! Where the recordings differ from the believed model.
+//! Where the recordings differ from the nominal model.
 
 use super::super::finding::Diagnosis;
 use super::super::words::{CHANNEL_WORDS, in_unit, listed};
@@ -44,7 +44,7 @@ impl Diagnosis {
             let (verdict, but) = match worst.sigmas > NOISE_ALONE {
                 true => ("No effect was found in", " but for more than noise"),
                 false => (
-                    "Nowhere. The believed model, moved within its tolerances, explains",
+                    "Nowhere. The nominal model, moved within its tolerances, explains",
                     "",
                 ),
             };
@@ -106,7 +106,7 @@ impl Diagnosis {
             count => format!(", in {count} stretches that make {long:.1} s"),
         };
         format!(
-            "Between {from:.2} and {to:.2} s of {} the {} differs from the believed model, whatever its tolerances allow{times}: by {} RMS, where {} is {}.",
+            "Between {from:.2} and {to:.2} s of {} the {} differs from the nominal model, whatever its tolerances allow{times}: by {} RMS, where {} is {}.",
             self.name(worst.recording),
             CHANNEL_WORDS[worst.channel as usize],
             self.baseline_rms(worst, [from, to]),

@@ -1,6 +1,6 @@
 //! What a run tells its flange to do.
 //!
-//! The log of the desired force shows what is wanted of the contact, and nothing before it: a ramp from the force before contact is told beside the run.
+//! The log of the desired force shows what is wanted of the contact, and nothing before it: a ramp from the force before contact is given beside the run.
 //! Without one the flange comes with the whole desired force, which presses its slide on its stop.
 
 use crate::diagnosis::flange::{ForceRamp, Run, RunMetrics};

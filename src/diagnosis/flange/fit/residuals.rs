@@ -1,7 +1,7 @@
 //! What of a run the simulation is to meet: the impact reading by reading, the bounces in means of 10 ms, the way to rest in means of 25 to 40 ms, the
 //! spectrum of the ringing and the frequency of its largest line, and the logged peak.
 //!
-//! Bounces are chaotic: read by read they would only tell by how much each of them is too early. Residuals are told by the largest reading of the run.
+//! Bounces are chaotic: read by read they would only tell by how much each of them is too early. Residuals are scaled by the largest reading of the run.
 
 use super::course::RunCourse;
 use super::prediction::PHASES;
@@ -33,7 +33,7 @@ const LINE: f64 = 0.2;
 const WHOLE: f64 = f64::INFINITY;
 /// Residual of the logarithm of the logged peak [1].
 const PEAK: f64 = 0.025;
-/// Time after contact in which each reading differs from that before, so that the reader is told [s].
+/// Time after contact in which each reading differs from that before, so that the reader is identified [s].
 const READER_TIME: f64 = 0.35;
 
 /// A mean over a time that is to be met.

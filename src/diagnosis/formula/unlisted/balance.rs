@@ -129,7 +129,7 @@ fn samples(
                 if moment.speed.abs() < MOVING {
                     continue;
                 }
-                // Friction is told as it resists.
+                // Friction is reported as it resists.
                 let against = latent.port == Port::Friction;
                 value *= moment.speed.signum() * if against { -1.0 } else { 1.0 };
             }

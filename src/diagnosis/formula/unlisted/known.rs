@@ -43,7 +43,7 @@ fn words(latent: &Latent, form: Form) -> (&'static str, &'static str) {
         (PistonForce, Time, _, Periodic) => ("an unbalanced spindle, a vibrating neighbour, a cutter's teeth", "record with the spindle off, and at another speed"),
         (PistonForce, Time, _, _) => ("something outside that pulls at certain times: a hose or cable moved by the robot, another machine", "record the same program with the robot standing still"),
         (Friction, ChamberPressure | PressureDifference, _, _) => ("seals whose friction does not grow in proportion to the pressure", "measure the breakaway force at several pressures"),
-        (PistonForce, ChamberPressure | PressureDifference, _, _) => ("a piston area that is another one than believed, a chamber that does not vent to the atmosphere, a pressure that does not reach the piston", "check bore and rod, and measure both chambers' pressures"),
+        (PistonForce, ChamberPressure | PressureDifference, _, _) => ("a piston area off its nominal value, a chamber that does not vent to the atmosphere, a pressure that does not reach the piston", "check bore and rod, and measure both chambers' pressures"),
         (Friction, ContactForce, _, _) => ("guides that rub under side load: the contact force acts at an angle or off the axis", "press with the tool on the axis and off it"),
         (PistonForce, ContactForce, _, _) => ("a second way for the force: a stop, a bellows or a bracket that takes a part of it", "press on the load cell at several forces with covers off"),
         (PistonForce, Surface, _, _) => ("something that comes with the robot's place along the axis: a cable, a hose, a misaligned fixture", "record the same program further along the axis"),

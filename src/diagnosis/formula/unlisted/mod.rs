@@ -1,4 +1,4 @@
-//! Physics without a name: what it says of recordings that it was not fitted to; and for people, the shape that was found, what known physics has such
+//! A model discrepancy: what it says of recordings that it was not fitted to; and for people, the shape that was found, what known physics has such
 //! a shape, and which known effects came nearest.
 
 pub mod balance;

@@ -1,4 +1,4 @@
-//! Part of diagnosis.json on a term without a name.
+//! Part of diagnosis.json on a model discrepancy.
 
 use serde::{Deserialize, Serialize};
 
@@ -77,7 +77,7 @@ pub struct NearEffects {
 }
 
 impl Diagnosis {
-    /// Words on a term without a name, if there is one.
+    /// Words on a model discrepancy, if there is one.
     #[must_use]
     pub fn unlisted_report(&self) -> Option<UnlistedReport> {
         let shape = self.shape.as_ref()?;
@@ -108,7 +108,7 @@ impl Diagnosis {
         })
     }
 
-    /// Known effects that came nearest to what a term without a name explains.
+    /// Known effects that came nearest to what a model discrepancy explains.
     #[must_use]
     pub fn nearest_known(&self) -> Vec<NearEffects> {
         let by_name =

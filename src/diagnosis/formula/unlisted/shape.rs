@@ -1,4 +1,4 @@
-//! The shape of a term without a name: its value against its variable, with how sure it is.
+//! The shape of a model discrepancy: its value against its variable, with how sure it is.
 //!
 //! ```text
 //! y(x) = sum d_k psi_k(x),   half width = 1.96 sqrt(psi^T V psi)
