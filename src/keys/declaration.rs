@@ -348,7 +348,7 @@ impl Key {
             false => format!("{}: {}", listed(&kinds, "and"), self.meaning),
         };
         if let Some(decides) = self.assumed {
-            meaning += &format!("; judged, decides {decides}");
+            meaning += &format!("; assumed, decides {decides}");
         }
         [unit, default, range, meaning]
     }

@@ -363,13 +363,13 @@ class Examination:
         page = Page((of.folder / "report.html").read_text())
         for table in page.tables:
             head = [h.strip() for h in table["rows"][0]] if table["rows"] else []
-            if "believed, σ" in head:
+            if "nominal, σ" in head:
                 for row in table["rows"][1:]:
                     cells = dict(zip(head, row))
                     column = next(c for c, (w, *_) in CHANNELS.items() if w == cells["channel"])
                     rows = of.fitted[of.fitted.recording == cells["recording"]]
                     factor = CHANNELS[column][2]
-                    for model, shown, sigma in (("believed", "believed", "believed, σ"), ("improved", "improved", "improved, σ"), ("tolerated", None, "within tolerances, σ")):
+                    for model, shown, sigma in (("believed", "nominal", "nominal, σ"), ("improved", "improved", "improved, σ"), ("tolerated", None, "within tolerances, σ")):
                         size, sigmas = of.size(rows, model, column)
                         if shown:
                             self.number(f"page: {row}", cells[shown].split()[0], factor * size)
@@ -384,7 +384,7 @@ class Examination:
                         continue  # A joint's: not in comparison.parquet.
                     in_turn = cells["recording"] == IN_TURN
                     rows, after = (of.fitted, "left_out") if in_turn else (of.kept, "improved")
-                    for shown, model in (("believed", "believed"), ("within tolerances", "tolerated"), ("improved", after)):
+                    for shown, model in (("nominal", "believed"), ("within tolerances", "tolerated"), ("improved", after)):
                         size, sigmas = of.size(rows, model, column)
                         self.number(f"page: {row}", cells[shown].split()[0], CHANNELS[column][2] * size)
                     self.number(f"page: {row}", cells["improved, σ"], sigmas)
@@ -436,8 +436,8 @@ class Examination:
             fact("`nothing is missing`", account["headline"] == "nothing is missing", not beyond and not of.json["remaining"])
             fact("`Nowhere.`", "Nowhere." in text, not any(e[0] > NOISE_ALONE and not e[4] for e in of.errors()))
         close = [c for c in of.json["considered"] if c["log10_odds"] >= LEAST_ODDS] or of.json["alternatives"]
-        if "nothing need be" in text:
-            fact("`nothing need be` beside rivals that are not ruled out", bool(close), False)
+        if "No further recording is needed" in text:
+            fact("`no further recording is needed` beside rivals that are not ruled out", bool(close), False)
         for alternative in of.json["alternatives"]:
             fact("an alternative at least at odds of 1 to 100", alternative["odds"] >= 10**LEAST_ODDS, True)
         for link in of.json["links"]:

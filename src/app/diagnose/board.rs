@@ -276,7 +276,7 @@ fn of_balance(balance: &Balance) -> Cloud {
     }
 }
 
-/// Physics without a name against its variable, with its 95 % band where it is known better than by its own size.
+/// A model discrepancy against its variable, with its 95 % band where it is known better than by its own size.
 fn of_unlisted(report: &UnlistedReport) -> Cloud {
     let (_, at_unit, at) = display_name(&format!("x_{}", report.at_unit));
     let (_, unit, of) = display_name(&format!("x_{}", report.value_unit));
@@ -298,7 +298,7 @@ fn of_unlisted(report: &UnlistedReport) -> Cloud {
     };
     let port = report.port.replace('_', " ");
     Cloud {
-        title: "The term without a name".to_owned(),
+        title: "The model discrepancy".to_owned(),
         horizontal: format!("{} [{at_unit}]", over.replace('_', " ")),
         vertical: format!("{port} [{unit}]"),
         groups: vec![

@@ -64,7 +64,7 @@ pub(super) fn channel<'a>(
     let words = capital(CHANNEL_WORDS[index]);
     // Of a flange the desired force stands in place of a nominal model.
     let is_flange = !answer.details.runs.is_empty();
-    let nominal = if is_flange { "desired" } else { "as believed" };
+    let nominal = if is_flange { "desired" } else { "nominal" };
     let models = [
         (&channel.nominal, nominal, Role::Command, Stroke::Dashed),
         (&channel.improved, "improved", Role::Estimate, Stroke::Plain),
@@ -125,7 +125,7 @@ pub(in crate::app) fn variable(name: &str) -> (&str, &'static str, f64) {
         "set_pressure" => ("set pressure", "bar", 1e-5),
         "surface_m" => ("place of the surface", "mm", 1e3),
         "contact_force" => ("contact force", "N", 1.0),
-        "phase" => ("touching (2) and told to extend (1)", "1", 1.0),
+        "phase" => ("touching (2) and commanded to extend (1)", "1", 1.0),
         other => (other, "", 1.0),
     }
 }
@@ -168,7 +168,7 @@ pub(super) fn balance<'a>(balance: &Balance) -> Panel<'a> {
         vertical_label: format!("lacking [{unit}]"),
         horizontal: Horizontal::Quantity(format!("{words} [{of}]")),
         series: vec![
-            cloud(&balance.before, "as believed", Role::Command),
+            cloud(&balance.before, "nominal", Role::Command),
             cloud(&balance.after, "improved", Role::Estimate),
         ],
         within: robust_range(&balance.before).map(|ends| ends.map(|end| factor * end)),
@@ -176,7 +176,7 @@ pub(super) fn balance<'a>(balance: &Balance) -> Panel<'a> {
     }
 }
 
-/// Physics without a name against its variable.
+/// A model discrepancy against its variable.
 pub(super) fn unlisted<'a>(report: &UnlistedReport) -> Panel<'a> {
     let (_, at_unit, at) = display_name(&format!("x_{}", report.at_unit));
     let (_, unit, of) = display_name(&format!("x_{}", report.value_unit));

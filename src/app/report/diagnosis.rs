@@ -2,7 +2,7 @@
 
 use super::charts::{balance, channel, origin, unlisted};
 use super::provenance::provenance;
-use super::tables::{detectable, how_well, own_numbers, ruled_out, told};
+use super::tables::{account_paragraphs, detectable, how_well, own_numbers, ruled_out};
 use crate::diagnosis::answer::account::SectionKind;
 use crate::diagnosis::answer::details::remaining_errors;
 use crate::diagnosis::answer::estimate::Estimate;
@@ -66,7 +66,7 @@ pub(super) fn page<'a>(answer: &Answer, comparison: &'a Comparison) -> Document<
 
 fn next_experiment<'a>(answer: &Answer) -> Option<Section<'a>> {
     let kind = SectionKind::NextExperiment;
-    let blocks: Vec<Block<'a>> = told(answer, &[kind]).collect();
+    let blocks: Vec<Block<'a>> = account_paragraphs(answer, &[kind]).collect();
     (!blocks.is_empty()).then(|| Section::new(kind.title(), blocks))
 }
 
@@ -83,7 +83,10 @@ fn lead(answer: &Answer) -> Vec<String> {
     lead.extend(faults.map(|fault| capital(&fault.words) + "."));
     if answer.verdict == Verdict::NothingMissing {
         let left = answer.details.account.section(SectionKind::Remaining);
-        lead.extend(left.into_iter().flat_map(|told| told.paragraphs.clone()));
+        lead.extend(
+            left.into_iter()
+                .flat_map(|section| section.paragraphs.clone()),
+        );
     }
     lead
 }
@@ -214,14 +217,14 @@ fn what_is_missing<'a>(answer: &Answer) -> Option<Section<'a>> {
             blocks.push(Block::Panel(unlisted(report)));
         }
     }
-    blocks.extend(told(answer, &FOUND));
+    blocks.extend(account_paragraphs(answer, &FOUND));
     (!blocks.is_empty()).then(|| Section::new("What is missing", blocks))
 }
 
 /// Strips of the times in which the effects show.
 fn where_it_shows<'a>(answer: &Answer, comparison: &Comparison) -> Option<Section<'a>> {
     let mut blocks: Vec<Block<'a>> =
-        told(answer, &[SectionKind::Mismatch, SectionKind::Link]).collect();
+        account_paragraphs(answer, &[SectionKind::Mismatch, SectionKind::Link]).collect();
     let mut subsystems: Vec<&str> = Vec::new();
     for effect in &answer.effects {
         if !subsystems.contains(&effect.subsystem.as_str()) {
@@ -313,14 +316,15 @@ fn balances<'a>(comparison: &Comparison) -> Option<Section<'a>> {
 /// All that the account says, folded away.
 fn account<'a>(answer: &Answer) -> Option<Section<'a>> {
     let text = answer.details.account.text(&answer.details.case);
-    let mut blocks: Vec<Block<'a>> = told(answer, &[SectionKind::Recordings]).collect();
+    let mut blocks: Vec<Block<'a>> =
+        account_paragraphs(answer, &[SectionKind::Recordings]).collect();
     for kind in [
         SectionKind::Arm,
         SectionKind::PathPlaces,
         SectionKind::NotWritten,
         SectionKind::HowToRun,
     ] {
-        let paragraphs: Vec<Block<'a>> = told(answer, &[kind]).collect();
+        let paragraphs: Vec<Block<'a>> = account_paragraphs(answer, &[kind]).collect();
         if !paragraphs.is_empty() {
             blocks.push(Block::Heading(kind.title().to_owned()));
             blocks.extend(paragraphs);

@@ -24,11 +24,11 @@ pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
         SectionKind::UnseenRun,
         SectionKind::Runs,
     ];
-    blocks.extend(told(answer, &kinds));
+    blocks.extend(account_paragraphs(answer, &kinds));
     (!blocks.is_empty()).then(|| Section::new("How well it fits", blocks))
 }
 
-/// Departure of each channel of each recording, in multiples of `yardstick`.
+/// Departure of each channel of each recording, in multiples of the reference noise.
 fn misfit(misfit: &[ChannelMisfit], reference_noise: &str) -> Option<Table> {
     let row = |m: &ChannelMisfit| {
         let (words, unit, factor) = of_column(&m.channel);
@@ -58,9 +58,9 @@ fn misfit(misfit: &[ChannelMisfit], reference_noise: &str) -> Option<Table> {
                 "recording",
                 "channel",
                 "#readings",
-                "#believed",
+                "#nominal",
                 "#improved",
-                "#believed, σ",
+                "#nominal, σ",
                 "#within tolerances, σ",
                 "#improved, σ",
                 "#not fitted to, σ",
@@ -93,7 +93,7 @@ fn prediction(errors: &[PredictionError], reference_noise: &str) -> Option<Table
             &[
                 "recording",
                 "channel",
-                "#believed",
+                "#nominal",
                 "#within tolerances",
                 "#improved",
                 &format!("#{reference_noise}"),
@@ -152,7 +152,7 @@ pub(super) fn own_numbers<'a>(answer: &Answer) -> Option<Section<'a>> {
         "The rig file's own numbers, moved within their tolerances.",
         &[
             "number",
-            "#believed",
+            "#nominal",
             "#found",
             "#low",
             "#high",
@@ -217,12 +217,15 @@ pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<Section<'a>> {
             details.ruled_out.iter().map(row).collect(),
         )));
     }
-    blocks.extend(told(answer, &[SectionKind::Ambiguous]));
+    blocks.extend(account_paragraphs(answer, &[SectionKind::Ambiguous]));
     (!blocks.is_empty()).then(|| Section::new("Other explanations", blocks))
 }
 
 /// What the account says of these, a paragraph each.
-pub(super) fn told<'a>(answer: &Answer, kinds: &[SectionKind]) -> impl Iterator<Item = Block<'a>> {
+pub(super) fn account_paragraphs<'a>(
+    answer: &Answer,
+    kinds: &[SectionKind],
+) -> impl Iterator<Item = Block<'a>> {
     let account = &answer.details.account;
     let sections = kinds.iter().filter_map(|kind| account.section(*kind));
     let paragraphs = sections.flat_map(|section| &section.paragraphs);

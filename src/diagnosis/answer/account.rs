@@ -35,7 +35,7 @@ impl Diagnosis {
         account.add(SectionKind::Remaining, self.what_is_left());
         account.add(SectionKind::Tried, self.how_the_law_fares());
         account.add(SectionKind::RuledOut, vec![self.what_was_ruled_out()]);
-        account.add(SectionKind::Ambiguous, self.not_told_apart());
+        account.add(SectionKind::Ambiguous, self.not_distinguished());
         account.add(SectionKind::NextExperiment, vec![self.what_next()]);
         account.add(SectionKind::OwnNumbers, vec![self.own_numbers()]);
         let notes = self.notes.iter().map(|n| format!("{n}."));

@@ -9,7 +9,7 @@ use super::missing::probability;
 use crate::diagnosis::fit::hypothesis::effect_display_name;
 use crate::effects::{Effect, UNLISTED};
 
-/// Odds from which one law of a family is told from another (Kass and Raftery, Journal of the American Statistical Association 90, 1995) [1].
+/// Odds from which one law of a family is distinguished from another (Kass and Raftery, Journal of the American Statistical Association 90, 1995) [1].
 const CLEAR: f64 = 3.0;
 
 impl Diagnosis {

@@ -38,7 +38,7 @@ fn link_words(link: &LinkResidual, regimes: &[Regime]) -> String {
             ),
         };
     }
-    let telling: Vec<String> = regimes
+    let explaining: Vec<String> = regimes
         .iter()
         .filter(|r| r.correlation_ratio >= EXPLAINING)
         .take(3)
@@ -50,13 +50,10 @@ fn link_words(link: &LinkResidual, regimes: &[Regime]) -> String {
             )
         })
         .collect();
-    let when = if telling.is_empty() {
-        "; no single variable says when".to_owned()
+    let when = if explaining.is_empty() {
+        "; no single variable explains it".to_owned()
     } else {
-        format!(
-            "; what says when, by its share of the variance: {}",
-            listed(&telling)
-        )
+        format!("; explained variance by variable: {}", listed(&explaining))
     };
     let (unit, factor) = match link.link {
         Link::Regulator => ("mbar", 1e-2),

@@ -185,7 +185,7 @@ impl Diagnosis {
         let remaining = self.remaining.as_ref()?;
         let (unit, factor) = CHANNEL_UNITS[remaining.channel as usize];
         let said = |value: f64| format!("{} {unit}", significant(value * factor, 2));
-        let telling: Vec<String> = (self.regimes_of_what_is_left().iter())
+        let explaining: Vec<String> = (self.regimes_of_what_is_left().iter())
             .filter(|regime| regime.correlation_ratio >= EXPLAINING)
             .take(MOST_OTHERS)
             .map(|regime| {
@@ -193,16 +193,13 @@ impl Diagnosis {
                 format!("{name} ({})", percent(regime.correlation_ratio))
             })
             .collect();
-        let when = if telling.is_empty() {
-            "no single variable says when".to_owned()
+        let when = if explaining.is_empty() {
+            "no single variable explains it".to_owned()
         } else {
-            format!(
-                "what says when, by its share of the variance: {}",
-                listed(&telling)
-            )
+            format!("explained variance by variable: {}", listed(&explaining))
         };
         Some(format!(
-            "The best laws leave {} RMS in the {}, where the sensor's noise is {}, correlated over {} s; {when}. Every effect was judged against that in place of the noise.",
+            "The best laws leave {} RMS in the {}, where the sensor's noise is {}, correlated over {} s; {when}. Every effect was compared with that in place of the noise.",
             said(remaining.size),
             CHANNEL_WORDS[remaining.channel as usize],
             said(remaining.noise),

@@ -26,7 +26,7 @@ impl Considered {
 }
 
 impl Diagnosis {
-    pub(super) fn not_told_apart(&self) -> Vec<String> {
+    pub(super) fn not_distinguished(&self) -> Vec<String> {
         let fitted = self.rivals().map(|rival| {
             format!(
                 "{}, at odds of {}.",
@@ -61,12 +61,12 @@ impl Diagnosis {
             (false, true) => format!("Beside what was found, {} may be at work", listed(&more)),
             (true, false) => format!("{} may do without {}", listed(&names), listed(&fewer)),
             (false, false) => format!("It may be {} instead", listed(&names)),
-            // The same effects: what differs is where the term without a name enters.
+            // The same effects: what differs is where the model discrepancy enters.
             (true, true) => rival.hypothesis.unlisted().map_or_else(
                 || format!("{} may have other numbers", listed(&names)),
                 |latent| {
                     format!(
-                        "What has no name may be the {}, depending on the {}, instead",
+                        "The model discrepancy may be in the {}, depending on the {}, instead",
                         port(latent.port).words,
                         variable(latent.variable).words
                     )
@@ -81,8 +81,8 @@ impl Diagnosis {
         if !near && self.shape.is_some() {
             return self.what_to_check();
         }
-        let telling = (self.experiments.first()).filter(|best| best.square >= TELLS);
-        let settles = telling.map(|best| {
+        let separating = (self.experiments.first()).filter(|best| best.square >= TELLS);
+        let settles = separating.map(|best| {
             format!(
                 "{}. After a new fit the two would stand {} standard deviations apart.",
                 best.experiment.instruction,
@@ -93,13 +93,13 @@ impl Diagnosis {
             (true, Some(settles)) => format!("To settle it: {settles}"),
             (true, None) if self.experiments.is_empty() => String::new(),
             (true, None) => format!(
-                "None of the {} experiments tried would tell these apart.",
+                "None of the {} experiments tried would distinguish these.",
                 self.experiments.len()
             ),
             (false, settles) => {
                 let surer = settles.map_or(String::new(), |s| format!(" To be surer still: {s}"));
                 format!(
-                    "To tell explanations apart nothing need be: {}{surer}",
+                    "No further recording is needed to distinguish the explanations: {}{surer}",
                     nearest(&considered, self.looked_at)
                 )
             }

@@ -1,4 +1,4 @@
-//! Words on physics without a name: where it enters, on what it depends, its shape, and what known physics is near.
+//! Words on a model discrepancy: where it enters, on what it depends, its shape, and what known physics is near.
 
 use std::fmt::Write as _;
 
@@ -17,7 +17,7 @@ use crate::quantity::significant;
 const BAR: usize = 32;
 
 impl Diagnosis {
-    /// Paragraphs on a term without a name; none where there is none.
+    /// Paragraphs on a model discrepancy; none where there is none.
     pub(super) fn unlisted_words(&self) -> Vec<String> {
         let Some(shape) = &self.shape else {
             return Vec::new();
@@ -64,7 +64,7 @@ impl Diagnosis {
         let others: Vec<String> = others.collect();
         let rest = match others.is_empty() {
             true => String::new(),
-            false => format!(" Not told apart from it: {}.", listed(&others)),
+            false => format!(" Not distinguished from it: {}.", listed(&others)),
         };
         Some(format!(
             "As a formula, in SI: {} = {}, with {}; the intervals are those of 95 %.{rest}",
