@@ -189,8 +189,8 @@ pub enum Refusal {
         context: &'static str,
         expected: &'static str,
     },
-    #[error("{place} is not finite")]
-    NotFinite { place: String },
+    #[error("{location} is not finite")]
+    NotFinite { location: String },
     #[error("link `{link}` has a {role} {shape} of {value}; expected positive sizes")]
     ShapeSize {
         link: String,

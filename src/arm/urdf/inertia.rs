@@ -106,7 +106,7 @@ fn link_body(placed: &Placed, notes: &mut Vec<String>) -> Result<BodyInertia, Re
     );
     if !inertia.is_finite() {
         return Err(Refusal::NotFinite {
-            place: format!("inertia of link `{link}`"),
+            location: format!("inertia of link `{link}`"),
         });
     }
     let moments = principal_moments(&inertia);

@@ -241,7 +241,7 @@ fn held_motion(joint: &Joint, kind: JointKind, held: f64) -> Result<DPose3, Refu
 /// Pose of a URDF `origin`, refused if it is not finite; `place` says where it stands.
 pub(super) fn pose_of(
     origin: &urdf_rs::Pose,
-    place: impl FnOnce() -> String,
+    location: impl FnOnce() -> String,
 ) -> Result<DPose3, Refusal> {
     let [roll, pitch, yaw] = *origin.rpy;
     // Fixed-axis roll, pitch, yaw: roll turns first.
@@ -252,6 +252,8 @@ pub(super) fn pose_of(
     if pose.translation.is_finite() && pose.rotation.is_finite() {
         Ok(pose)
     } else {
-        Err(Refusal::NotFinite { place: place() })
+        Err(Refusal::NotFinite {
+            location: location(),
+        })
     }
 }

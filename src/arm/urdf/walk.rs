@@ -308,12 +308,12 @@ impl Walked {
         }
         let Some(known) = element.attributes.iter().find(|known| known.name == name) else {
             let names = || element.attributes.iter().map(|known| known.name);
-            let place = format!("{owner}: <{}> has no attribute `{name}`", element.name);
+            let location = format!("{owner}: <{}> has no attribute `{name}`", element.name);
             if let Some(meant) = nearest(name, names()) {
-                return Err(fault(line, format!("{place}; did you mean `{meant}`?")));
+                return Err(fault(line, format!("{location}; did you mean `{meant}`?")));
             }
             if element.exact {
-                let words = format!("{place}, expected {}", listed(names()));
+                let words = format!("{location}, expected {}", listed(names()));
                 return Err(fault(line, words));
             }
             self.pass_over(format!("{name} of <{}>", element.name), line);
@@ -346,17 +346,17 @@ impl Walked {
         name: &str,
         owner: &str,
     ) -> Result<(), Fault> {
-        let place = format!("{owner}: <{}> has {name}=\"{value}\"", element.name);
+        let location = format!("{owner}: <{}> has {name}=\"{value}\"", element.name);
         if element.name == "joint" && name == "type" && !JOINT_TYPES.contains(&value) {
             let expected = match nearest(value, JOINT_TYPES.into_iter()) {
                 Some(meant) => format!("did you mean {meant}?"),
                 None => format!("expected {}", listed(JOINT_TYPES.into_iter())),
             };
-            return Err(fault(line, format!("{place}; {expected}")));
+            return Err(fault(line, format!("{location}; {expected}")));
         }
         let may_be_empty = ["material", "visual", "collision", "robot", "texture"];
         if value.trim().is_empty() && !may_be_empty.contains(&element.name) {
-            return Err(fault(line, format!("{place}, expected a name")));
+            return Err(fault(line, format!("{location}, expected a name")));
         }
         Ok(())
     }

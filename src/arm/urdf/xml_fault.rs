@@ -73,8 +73,8 @@ pub(super) fn in_words(text: &str, error: &Error) -> Fault {
         other => {
             // The reader's own words, without the place that stands before them already.
             let said = other.to_string();
-            let place = format!(" at {row}:{col}");
-            said.replace(&place, "")
+            let location = format!(" at {row}:{col}");
+            said.replace(&location, "")
         }
     };
     Fault {
