@@ -526,7 +526,7 @@ fn the_picture_of_places_has_robot_obstacles_and_part() {
     let outcome = bench.idc(&[&["place", "scenario.toml"][..], &range].concat(), &[]);
     assert_eq!(outcome.code, 0, "{}", outcome.err);
     let svg = std::fs::read_to_string(bench.path("place.svg")).unwrap();
-    for word in ["tool rack", "robot", "part now", "part, best"] {
+    for word in ["tool rack", "robot", "part now", "part, best", "reach: "] {
         assert!(svg.contains(word), "{word}");
     }
     // Obstacle, base, six links with device and tool, part twice.

@@ -107,7 +107,8 @@
       const how = element("span", { class: "how" }, matchMedia("(pointer: coarse)").matches ? "One finger turns, two move and zoom, a tap picks." : "Drag turns, right drag moves, the wheel zooms once the drawing is clicked.");
       this.tools = element("div", { class: "tools" }, ...(told.views.length > 1 ? this.buttons : []), reset, how);
       const parts = [this.tools, this.stage];
-      if (told.legend) parts.push(this.legend(told.legend));
+      this.shades = element("div", { class: "shades-of-view" });
+      if (told.legend) parts.push(this.shades);
       if (told.words) parts.push(element("p", { class: "hint" }, told.words));
       if (told.lines.some((line) => line.lines || line.remark)) {
         this.panel = element("aside", { class: "panel", "aria-live": "polite" });
@@ -320,7 +321,11 @@
       this.view = which;
       this.buttons.forEach((button, at) => button.setAttribute("aria-pressed", String(at === which)));
       for (const mesh of this.bodies) mesh.visible = this.shown(mesh.userData.told);
-      for (const one of this.drawn) one.object.visible = this.shown(one);
+      // A line with a meaning of its own stands alone.
+      const own = this.lines.find((line) => line.legend && line.view === which);
+      for (const one of this.drawn) one.object.visible = this.shown(one) && !(own && one.view === null);
+      const legend = own?.legend ?? this.told.legend;
+      if (legend) this.shades.replaceChildren(this.legend(legend));
       if (this.arrow) this.arrow.visible = this.shown(this.told.arrow);
       const meshes = this.bodies.filter((mesh) => mesh.visible);
       const towards = new THREE.Vector3(...eye).normalize();
@@ -561,11 +566,11 @@
 
     brief({ line, segment }) {
       const rows = [element("b", {}, line.id)];
-      const { legend } = this.told;
+      const legend = line.legend ?? this.told.legend;
       if (segment !== undefined && line.values.length && legend) {
         const value = line.values[segment];
         const from = 0.5 * (line.stations[segment] + line.stations[segment + 1]);
-        const told = Number.isFinite(value) ? `${value < 0 ? "−" : "+"}${Math.abs(value).toPrecision(3)} ${legend.unit}` : legend.none?.[1] ?? "–";
+        const told = Number.isFinite(value) ? `${legend.unsigned ? "" : value < 0 ? "−" : "+"}${Math.abs(value).toPrecision(3)} ${legend.unit}` : legend.none?.[1] ?? "–";
         rows.push(element("span", {}, `at ${from.toFixed(1)} mm: ${legend.title} ${told}`));
         return rows;
       }

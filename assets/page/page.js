@@ -103,7 +103,9 @@
       if (begins > right || over <= left) return;
       const width = ctx.measureText(marker.label).width;
       const at = Math.max(left, begins);
-      const word = Math.max(left, Math.min(at + 4 * ratio, right - width));
+      // Where there is no room after its line it stands before it.
+      const after = at + 4 * ratio;
+      const word = Math.max(left, after + width <= right ? after : Math.min(at - 4 * ratio, right) - width);
       const free = ends.findIndex((end) => end < word);
       if (free < 0) return;
       ends[free] = word + width + 6 * ratio;

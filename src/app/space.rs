@@ -8,6 +8,7 @@ use crate::quantity::with_unit;
 use crate::scene::Scene;
 use crate::scene::colour::Colour;
 use crate::scene::error_scale::ErrorScale;
+use crate::scene::finished_edge::FinishedEdge;
 
 /// Millimetres a metre.
 pub(super) const MILLIMETRES: f64 = 1e3;
@@ -15,10 +16,13 @@ pub(super) const MILLIMETRES: f64 = 1e3;
 const MOST_TRIANGLES: usize = 30_000;
 /// From the direction in which the edge looks longest, so that the part looks solid too [rad].
 const TURN: f64 = 0.4;
+/// Pieces of a finished edge at most.
+const PIECES: usize = 400;
 /// Shades of a legend.
 const STEPS: usize = 41;
-/// The view of a run's drawing that shows all.
+/// Of a run's drawing the view that shows all, and that of the finished edge.
 const CELL: usize = 1;
+const FINISHED: usize = 2;
 
 /// The part and its edge in the colours of its force error, and the whole cell at a moment [s]; none without an edge.
 pub(super) fn of_run(scene: &Scene, moment: f64) -> Option<Drawing> {
@@ -44,6 +48,13 @@ pub(super) fn of_run(scene: &Scene, moment: f64) -> Option<Drawing> {
         // So few digits that they come back from a file as they were.
         eye: ((1e3 * eye).round() / 1e3).to_array(),
     };
+    let from = DQuat::from_rotation_z(TURN) * edge_direction(scene);
+    let mut views = vec![view("Force error", from), view("Whole cell", CELL_EYE)];
+    let mut lines = vec![edge(scene)];
+    if let Some(finished) = &scene.finished_edge {
+        views.push(view("Finished edge", from));
+        lines.push(chamfer(finished));
+    }
     Some(Drawing {
         name: "The part, its edge in the colours of the force error, and the cell".to_owned(),
         words: format!(
@@ -51,12 +62,9 @@ pub(super) fn of_run(scene: &Scene, moment: f64) -> Option<Drawing> {
             scene.edge_path.relative_force_error.len(),
             simplified(&solids).unwrap_or_default()
         ),
-        views: vec![
-            view("Edge", DQuat::from_rotation_z(TURN) * edge_direction(scene)),
-            view("Whole cell", CELL_EYE),
-        ],
+        views,
         bodies: solids.iter().map(drawn).collect(),
-        lines: vec![edge(scene)],
+        lines,
         arrow,
         legend: Some(legend(scene)),
     })
@@ -88,6 +96,56 @@ fn edge(scene: &Scene) -> DrawnLine {
     }
 }
 
+/// The finished edge, ends and all: of each piece the leg that is farthest out of tolerance.
+fn chamfer(finished: &FinishedEdge) -> DrawnLine {
+    let legs = &finished.chamfer_leg;
+    let step = legs.len().div_ceil(PIECES).max(1);
+    let worst = |legs: &[f64]| {
+        let error = |leg: &f64| finished.error(*leg).abs();
+        let worst = legs.iter().max_by(|a, b| error(a).total_cmp(&error(b)));
+        worst.copied().unwrap_or_default()
+    };
+    let last = legs.len().saturating_sub(1);
+    let places: Vec<usize> = (0..last).step_by(step).chain([last]).collect();
+    let pieces = places
+        .windows(2)
+        .map(|ends| worst(&legs[ends[0]..=ends[1]]));
+    let pieces: Vec<f64> = pieces.collect();
+    let [least, most] = finished.leg_limits;
+    let end = 2.0
+        * if most.is_finite() {
+            most
+        } else {
+            least.max(1e-3)
+        };
+    let leg = |step: usize| end * step as f64 / (STEPS - 1) as f64;
+    let points = places.iter().map(|place| finished.points_in_world[*place]);
+    DrawnLine {
+        id: "finished edge".to_owned(),
+        view: Some(FINISHED),
+        points: floats(points),
+        shades: pieces
+            .iter()
+            .map(|leg| shade(finished.colour(*leg)))
+            .collect(),
+        values: pieces
+            .iter()
+            .map(|leg| (MILLIMETRES * leg) as f32)
+            .collect(),
+        legend: Some(DrawnLegend {
+            title: "chamfer leg".to_owned(),
+            unit: "mm".to_owned(),
+            unsigned: true,
+            ends: [0.0, 0.5 * end, end].map(|leg| with_unit(MILLIMETRES * leg, "mm")),
+            shades: (0..STEPS)
+                .map(|step| shade(finished.colour(leg(step))))
+                .collect(),
+            none: None,
+        }),
+        ..DrawnLine::default()
+    }
+}
+
 fn legend(scene: &Scene) -> DrawnLegend {
     let scale = ErrorScale::of(&scene.edge_path);
     let end = scale.percent();
@@ -97,6 +155,7 @@ fn legend(scene: &Scene) -> DrawnLegend {
     DrawnLegend {
         title: "force error".to_owned(),
         unit: "%".to_owned(),
+        unsigned: false,
         ends: [
             format!("−{end} %"),
             "as desired".to_owned(),

@@ -30,7 +30,10 @@ pub fn front_svg(result: &StudyResult) -> Result<Option<String>, DesignError> {
     let Some(trade_off) = &result.objectives.trade_off else {
         return Ok(None);
     };
-    svg(HEIGHT, |root| draw(root, result, trade_off)).map(Some)
+    svg(("the trade-off", HEIGHT), |root| {
+        draw(root, result, trade_off)
+    })
+    .map(Some)
 }
 
 fn draw(root: &Area<'_>, result: &StudyResult, trade_off: &str) -> Drawn {

@@ -77,6 +77,9 @@ pub struct DrawnLine {
     pub remark: String,
     /// Lines to be copied; may be empty.
     pub lines: String,
+    /// Meaning of its own shades, in place of the drawing's; where it is shown, lines of all views are not.
+    #[serde(default)]
+    pub legend: Option<DrawnLegend>,
 }
 
 /// An arrow in space.
@@ -99,6 +102,9 @@ pub struct DrawnLegend {
     pub title: String,
     /// Its unit.
     pub unit: String,
+    /// Whether its values are sizes, without a sign.
+    #[serde(default)]
+    pub unsigned: bool,
     /// At its left, middle and right.
     pub ends: [String; 3],
     /// From left to right.

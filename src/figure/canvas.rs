@@ -31,8 +31,9 @@ pub(super) enum Anchor {
 
 pub(super) struct Canvas<'a>(DrawingArea<SVGBackend<'a>, Shift>);
 
-/// An SVG document with what `paint` paints on it; the size is in pixels outside, in tenths inside.
+/// An SVG document of a name with what `paint` paints on it; the size is in pixels outside, in tenths inside.
 pub(super) fn document(
+    name: &str,
     (width, height): Place,
     paint: impl FnOnce(&Canvas) -> Drawn,
 ) -> Result<String, String> {
@@ -44,7 +45,12 @@ pub(super) fn document(
     drop(canvas);
     painted.map_err(|error| error.to_string())?;
     let size = |unit: i32| format!("width=\"{}\" height=\"{}\"", width / unit, height / unit);
-    Ok(svg.replacen(&size(1), &(size(PX) + " stroke-linejoin=\"round\""), 1))
+    let name = maud::html! { (name) }.into_string();
+    let shown = format!(
+        "{} stroke-linejoin=\"round\" role=\"img\" aria-label=\"{name}\"",
+        size(PX)
+    );
+    Ok(svg.replacen(&size(1), &shown, 1))
 }
 
 impl Canvas<'_> {

@@ -29,7 +29,7 @@ pub(super) fn document(figure: &Figure) -> Result<String, FigureError> {
         canvas.text(&figure.title, middle, size, Anchor::Centre)?;
         layouts.iter().try_for_each(|layout| layout.paint(canvas))
     };
-    canvas::document((WIDTH, height), paint).map_err(|reason| FigureError::Drawing {
+    canvas::document(&figure.title, (WIDTH, height), paint).map_err(|reason| FigureError::Drawing {
         figure: figure.title.clone(),
         reason,
     })

@@ -1,6 +1,6 @@
 //! What stands in a cell as it is seen from above: the outline of each body, a convex one.
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 use super::Possible;
 use crate::cell::{Setup, Stance};
@@ -30,6 +30,8 @@ pub enum FootprintKind {
     PartNow,
     /// The part where the job is done most comfortably.
     PartBest,
+    /// As far as the tool reaches at the part's height with arm and slide stretched.
+    Reach,
 }
 
 /// Bodies of a cell from above, the arm at the start of the edge where the job is done best, if it can be, or as the scenario has it.
@@ -42,7 +44,7 @@ pub fn footprints(setup: &Setup, best: Option<(glam::DVec3, Possible)>) -> Vec<F
         ..own
     });
     let posture = setup.outline(&stance).ok().map(|outline| outline.start);
-    let mut found = Vec::new();
+    let mut found = vec![reach(setup, stance.world_from_part.translation.z)];
     let stroke = setup.scenario.process.working_stroke;
     let joints = posture.as_ref().map(|start| {
         let slide = std::iter::once(&stroke);
@@ -77,6 +79,26 @@ pub fn footprints(setup: &Setup, best: Option<(glam::DVec3, Possible)>) -> Vec<F
         });
     }
     found
+}
+
+/// How far the tool comes at a height at most: a circle about the arm's first joint.
+fn reach(setup: &Setup, height: f64) -> Footprint {
+    const SIDES: u32 = 180;
+    let nominal = &setup.scenario.nominal;
+    let mounting = &nominal.mounting;
+    let tool = mounting.tool_centre + nominal.device.full_stroke + mounting.tool_radius;
+    let first = setup.arm.chain.joints.first();
+    let joint = first.map_or(DVec3::ZERO, |joint| joint.parent_from_joint.translation);
+    let joint = setup.scenario.arm.world_from_base.transform_point(joint);
+    let square = (setup.arm.chain.reach() + tool).powi(2) - (height - joint.z).powi(2);
+    let radius = square.max(0.0).sqrt();
+    let turn = std::f64::consts::TAU / f64::from(SIDES);
+    let at = |side: u32| joint.truncate() + radius * DVec2::from_angle(turn * f64::from(side));
+    Footprint {
+        kind: FootprintKind::Reach,
+        name: format!("reach: {:.0} mm", 1e3 * radius),
+        outline: (0..SIDES).map(at).collect(),
+    }
 }
 
 /// Corners of the convex outline of points, anticlockwise (A. M. Andrew, Information Processing Letters 9, 1979).

@@ -20,7 +20,7 @@ const FONT: &str = "Arial, Liberation Sans, Helvetica, sans-serif";
 const TEXT: i32 = 17 * PX;
 const LARGE: i32 = 22 * PX;
 const DARK: RGBColor = RGBColor(0x22, 0x22, 0x22);
-const GREY: RGBColor = RGBColor(0x77, 0x77, 0x77);
+const GREY: RGBColor = RGBColor(0x66, 0x66, 0x66);
 const ROBOT: RGBColor = RGBColor(0xE6, 0x9F, 0x00);
 const OBSTACLE: RGBColor = RGBColor(0xC8, 0xBE, 0xAA);
 /// Comfort from 0 to 1: from yellow over green to deep blue (viridis, reversed), which the colour-blind tell apart and a printer too.
@@ -55,7 +55,11 @@ pub fn svg(
     };
     draw(&mut text, title, grid, tried, &standing).map_err(|error| error.to_string())?;
     let size = format!("width=\"{WIDTH}\" height=\"{HEIGHT}\"");
-    let shown = format!("width=\"{}\" height=\"{}\"", WIDTH / PX, HEIGHT / PX);
+    let shown = format!(
+        "width=\"{}\" height=\"{}\" role=\"img\" aria-label=\"where the part can lie, from above\"",
+        WIDTH / PX,
+        HEIGHT / PX
+    );
     Ok(text.replacen(&size, &shown, 1))
 }
 
@@ -131,9 +135,10 @@ fn draw(
         };
         chart.draw_series([Rectangle::new(corners, colour.filled())])?;
     }
+    reach(&mut chart, [across, up], standing.bodies)?;
     outlines(&mut chart, [across, up], standing.bodies)?;
     marks(&mut chart, tried, [across, up], standing)?;
-    legend(&root, tried)?;
+    legend(&root, tried, standing.bodies)?;
     root.present()
 }
 
@@ -211,12 +216,29 @@ fn outlines(chart: &mut Chart<'_, '_>, within: [(f64, f64); 2], bodies: &[Footpr
                 FootprintKind::Link => (ROBOT.mix(0.3), DARK.mix(0.5), 1),
                 FootprintKind::PartNow => (WHITE.mix(0.25), GREY.mix(1.0), 2),
                 FootprintKind::PartBest => (WHITE.mix(0.45), DARK.mix(1.0), 3),
+                FootprintKind::Reach => continue,
             };
             let closed = corners.iter().chain(corners.first()).copied();
             let closed: Vec<(f64, f64)> = closed.collect();
             chart.draw_series([Polygon::new(corners, filled.filled())])?;
             let style = line.stroke_width(width * PX as u32);
             chart.draw_series([PathElement::new(closed, style)])?;
+        }
+    }
+    Ok(())
+}
+
+/// How far the tool reaches: every other piece of a circle, as far as it is within the frame.
+fn reach(chart: &mut Chart<'_, '_>, [across, up]: [(f64, f64); 2], bodies: &[Footprint]) -> Drawn {
+    let inside =
+        |at: &(f64, f64)| (across.0..=across.1).contains(&at.0) && (up.0..=up.1).contains(&at.1);
+    for body in bodies.iter().filter(|b| b.kind == FootprintKind::Reach) {
+        for ends in body.outline.chunks_exact(2) {
+            let ends = [ends[0], ends[1]].map(|at| (1e3 * at.x, 1e3 * at.y));
+            if ends.iter().all(inside) {
+                let style = DARK.stroke_width(2 * PX as u32);
+                chart.draw_series([PathElement::new(ends, style)])?;
+            }
         }
     }
     Ok(())
@@ -341,7 +363,7 @@ fn tint(hindrance: Hindrance) -> RGBColor {
 }
 
 /// What the colours say, beside the map; of hindrances those that there are.
-fn legend(root: &Area<'_>, tried: &[TriedPlace]) -> Drawn {
+fn legend(root: &Area<'_>, tried: &[TriedPlace], bodies: &[Footprint]) -> Drawn {
     const STEPS: i32 = 50;
     let left = WIDTH - RIGHT + 24 * PX;
     let anchor = Pos::new(HPos::Left, VPos::Center);
@@ -374,6 +396,15 @@ fn legend(root: &Area<'_>, tried: &[TriedPlace]) -> Drawn {
         root.draw(&Rectangle::new(corners, tint(hindrance).filled()))?;
         root.draw(&Rectangle::new(corners, GREY.stroke_width(PX as u32)))?;
         words(hindrance.name().to_owned(), left + 32 * PX, y)?;
+    }
+    for body in bodies.iter().filter(|b| b.kind == FootprintKind::Reach) {
+        y += 36 * PX;
+        for dash in [0, 9, 18] {
+            let ends = [(left + dash * PX, y), (left + (dash + 6) * PX, y)];
+            root.draw(&PathElement::new(ends, DARK.stroke_width(2 * PX as u32)))?;
+        }
+        words(body.name.clone(), left + 32 * PX, y)?;
+        words("with the tool, stretched".to_owned(), left, y + 24 * PX)?;
     }
     Ok(())
 }

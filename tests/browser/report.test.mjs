@@ -1,4 +1,4 @@
-// Reports in a browser (how long they take to open is printed, not judged): small, silent on the network, zoomed, light and dark, on any width, on paper.
+// Reports in a browser (how long they take to open is printed, not judged): small, silent on the network, zoomed, light and dark, on paper. What they look like: pages.test.mjs.
 import assert from "node:assert/strict";
 import { statSync } from "node:fs";
 import { join } from "node:path";
@@ -19,75 +19,19 @@ before(async () => {
     run: join(plate, "report.html"),
     bench: join(made("bench", "run", "scenarios/paper_stairstep_sensed.toml"), "report.html"),
     compare,
-    // As few designs as a study may have: what it finds is not looked at.
-    design: join(made("design", "design", "scenarios/studies/device_design.toml", "--evaluations", "350"), "report.html"),
   };
 });
 after(() => browser.close());
 
 const address = (name) => String(pathToFileURL(pages[name]));
 const first = "figure.chart .plot[data-drawn]";
-// The charts are above the fold of no page: go there, and they are drawn. A study has none.
+// The charts are above the fold of no page: go there, and they are drawn.
 const drawn = async (page) => {
-  if (await page.locator("figure.chart").count() === 0) return;
   await page.locator("figure.chart").first().scrollIntoViewIfNeeded();
   await page.waitForSelector(first);
 };
 
-// What of a page's texts does not lie within the place that it has, its charts' included, which are painted.
-const clipped = (page) => page.evaluate(() => {
-  const found = [];
-  const within = (what, box, [left, top, right, bottom]) => {
-    if (box.left < left - 1 || box.right > right + 1 || box.top < top - 1 || box.bottom > bottom + 1) found.push(`${what}: ${[box.left, box.top, box.right, box.bottom].map(Math.round)} not in ${[left, top, right, bottom].map(Math.round)}`);
-  };
-  const walker = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
-  const range = document.createRange();
-  for (let node = walker.nextNode(); node; node = walker.nextNode()) {
-    const parent = node.parentElement;
-    // What is scrolled within its place is not cut off.
-    if (!node.data.trim() || parent.closest("script, style, noscript, .scroll, pre, .picture, .u-off")) continue;
-    range.selectNodeContents(node);
-    const box = range.getBoundingClientRect();
-    if (box.width === 0) continue;
-    const svg = parent.closest("svg")?.getBoundingClientRect();
-    within(node.data.trim().slice(0, 40), box, svg ? [svg.left, svg.top, svg.right, svg.bottom] : [0, -Infinity, innerWidth, Infinity]);
-  }
-  const pen = document.createElement("canvas").getContext("2d");
-  pen.font = "12px system-ui, sans-serif";
-  for (const { plot } of window.idcCharts.filter((chart) => chart.plot)) {
-    const ratio = devicePixelRatio;
-    const [left, top, width, height] = [plot.bbox.left, plot.bbox.top, plot.bbox.width, plot.bbox.height].map((v) => v / ratio);
-    const title = plot.axes[1].label;
-    // Names of phases have a band of their own above the signals.
-    for (const name of plot.names) within(`phase ${name.label} of ${title}`, name, [0, 0, plot.width, top]);
-    const [across, up] = plot.axes;
-    for (const value of up._values ?? []) {
-      if (value === null) continue;
-      const wide = pen.measureText(value).width;
-      // Between the axis's own name and its ticks.
-      within(`${value} of ${title}`, { left: left - 15 - wide, right: left, top: 0, bottom: 0 }, [up.labelSize - 4, 0, left, height]);
-    }
-    (across._values ?? []).forEach((value, which) => {
-      if (value === null) return;
-      const [middle, wide] = [left + plot.valToPos(across._splits[which], "x"), pen.measureText(value).width];
-      within(`${value} below ${title}`, { left: middle - 0.5 * wide, right: middle + 0.5 * wide, top: 0, bottom: 0 }, [0, 0, plot.width, height]);
-    });
-    const long = pen.measureText(title).width;
-    within(`name of ${title}`, { left: 0, right: long, top: 0, bottom: 0 }, [0, 0, height, height]);
-    const below = pen.measureText(across.label).width;
-    within(`name below ${title}`, { left: 0, right: below, top: 0, bottom: 0 }, [0, 0, width, height]);
-  }
-  return found;
-});
-// Charts that are out of sight wait.
-const allDrawn = async (page) => {
-  for (const chart of await page.locator("figure.chart").all()) {
-    await chart.scrollIntoViewIfNeeded();
-    await chart.locator("[data-drawn]").waitFor();
-  }
-};
-
-for (const name of ["diagnosis", "run", "bench", "compare", "design"]) {
+for (const name of ["diagnosis", "run", "bench", "compare"]) {
   test(`${name}: opens, at most 3 MB, without a network or an error`, async () => {
     assert.ok(statSync(pages[name]).size <= 3_000_000, `${statSync(pages[name]).size} bytes`);
     const { page, faults, requests, seconds } = await open(browser, address(name));
@@ -97,37 +41,7 @@ for (const name of ["diagnosis", "run", "bench", "compare", "design"]) {
     console.log(`${name}: ${(statSync(pages[name]).size / 1e6).toFixed(2)} MB, open after ${seconds.toFixed(2)} s`);
     await page.context().close();
   });
-
-  test(`${name}: nothing overflows on a phone, a tablet and a wide screen, light or dark`, async () => {
-    for (const width of [390, 1024, 1920]) {
-      for (const colorScheme of ["light", "dark"]) {
-        const { page, faults } = await open(browser, address(name), { viewport: { width, height: 900 }, colorScheme });
-        await page.evaluate(() => document.querySelectorAll("details").forEach((one) => { one.open = true; }));
-        await drawn(page);
-        const beyond = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
-        assert.ok(beyond <= 0, `${beyond} px beyond ${width}`);
-        if (colorScheme === "light") {
-          await allDrawn(page);
-          assert.deepEqual(await clipped(page), [], `at ${width} px`);
-        }
-        const theme = await page.evaluate(() => document.documentElement.dataset.theme);
-        assert.equal(theme, colorScheme);
-        assert.deepEqual(faults, []);
-        await page.context().close();
-      }
-    }
-  });
 }
-
-test("a study's page is one that is read", async () => {
-  const { page } = await open(browser, address("design"), { viewport: { width: 1024, height: 900 } });
-  const height = await page.evaluate(() => document.documentElement.scrollHeight);
-  assert.ok(height < 6000, `${height} px`);
-  const heads = await page.locator("h2").allTextContents();
-  for (const head of ["Chosen design", "Trade-off", "What binds", "Limits", "What it was measured by"]) assert.ok(heads.includes(head), `${head} of ${heads}`);
-  assert.ok(await page.locator(".picture svg").isVisible());
-  await page.context().close();
-});
 
 for (const [name, count] of [["run", 2], ["bench", 1]]) {
   test(`${name}: the picture is there`, async () => {

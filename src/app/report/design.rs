@@ -184,7 +184,15 @@ fn chosen<'a>(document: &Value) -> Section<'a> {
     let rows: Vec<Vec<Cell>> = design.into_iter().flatten().map(row).collect();
     let table = Table::new(
         "What was varied; the mark stands where the chosen value lies between its bounds.",
-        &["variable", "unit", "#start", "#chosen", "bounds", "", ""],
+        &[
+            "variable",
+            "unit",
+            "#start",
+            "#chosen",
+            "bounds",
+            "place between them",
+            "remark",
+        ],
         rows,
     );
     let files = [
@@ -315,7 +323,13 @@ fn limits<'a>(document: &Value) -> Option<Section<'a>> {
         ]
     };
     let rows: Vec<Vec<Cell>> = before.zip(after).map(row).collect();
-    let columns = ["limit", "#start", "", "#chosen", ""];
+    let columns = [
+        "limit",
+        "#start",
+        "start keeps it",
+        "#chosen",
+        "chosen keeps it",
+    ];
     let caption = "The worst of the scenarios.";
     (!rows.is_empty()).then(|| {
         let table = Table::new(caption, &columns, rows);

@@ -197,7 +197,7 @@ pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<Section<'a>> {
     if !details.considered.is_empty() {
         blocks.push(Block::Table(Table::new(
             "Other explanations, against the one given. Ruled out: fitted in full, at odds below 1 to 100; fell behind: the same by a rough fit, with the piston held to its measured motion, where a law that acts on the motion alone can seem to explain more than it does.",
-            &["explanation", "", "#odds", "#of the mismatch explained", "fitted"],
+            &["explanation", "verdict", "#odds", "#of the mismatch explained", "fitted"],
             details.considered.iter().map(row).collect(),
         )));
     }

@@ -4,7 +4,8 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use super::style::{
-    Area, CHOSEN, Chart, DARK, Drawn, FONT, GREY, LIMIT, PX, TEXT, inside, limits_of,
+    Area, CHOSEN, CHOSEN_WORDS, Chart, DARK, Drawn, FONT, GREY, LIMIT, LIMIT_WORDS, PX, TEXT,
+    inside, limits_of,
 };
 use crate::design::result::{LimitState, StudyResult};
 use crate::quantity::display_name::{raised, with_unit};
@@ -100,7 +101,13 @@ pub(super) fn words(chart: &Chart<'_, '_>, limits: &[LimitLine]) -> Drawn {
     for limit in limits {
         dashed(&area, limit.line)?;
         let (place, ends) = limit.place;
-        label(&area, place, &limit.words, LIMIT, (ends, FontStyle::Normal))?;
+        label(
+            &area,
+            place,
+            &limit.words,
+            LIMIT_WORDS,
+            (ends, FontStyle::Normal),
+        )?;
     }
     Ok(())
 }
@@ -177,7 +184,7 @@ pub(super) fn marks(chart: &Chart<'_, '_>, result: &StudyResult, ranges: [(f64, 
             beside(&area, place, &text, DARK, [right, above])?;
         } else {
             area.draw(&Circle::new(place, 7 * PX, CHOSEN.filled()))?;
-            beside(&area, place, &text, CHOSEN, [right, false])?;
+            beside(&area, place, &text, CHOSEN_WORDS, [right, false])?;
         }
     }
     Ok(())

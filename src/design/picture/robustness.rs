@@ -24,7 +24,11 @@ pub fn robustness_svg(result: &StudyResult) -> Result<Option<String>, DesignErro
         return Ok(None);
     };
     let rows = robustness.quantiles.len().div_ceil(2).max(1) as i32;
-    svg(HEAD + rows * ROW, |root| draw(root, result, robustness)).map(Some)
+    let height = HEAD + rows * ROW;
+    svg(("the limits under disturbance", height), |root| {
+        draw(root, result, robustness)
+    })
+    .map(Some)
 }
 
 fn draw(root: &Area<'_>, result: &StudyResult, robustness: &Robustness) -> Drawn {

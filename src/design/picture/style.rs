@@ -19,7 +19,10 @@ pub(super) const FRONT: RGBColor = RGBColor(0x00, 0x72, 0xB2);
 pub(super) const CHOSEN: RGBColor = RGBColor(0xD5, 0x5E, 0x00);
 pub(super) const LIMIT: RGBColor = RGBColor(0xCC, 0x79, 0xA7);
 pub(super) const DARK: RGBColor = RGBColor(0x22, 0x22, 0x22);
-pub(super) const GREY: RGBColor = RGBColor(0x77, 0x77, 0x77);
+pub(super) const GREY: RGBColor = RGBColor(0x66, 0x66, 0x66);
+/// Of words beside what has these colours, dark enough to be read on white: 4.5 to 1 and more.
+pub(super) const CHOSEN_WORDS: RGBColor = RGBColor(0xB3, 0x47, 0x00);
+pub(super) const LIMIT_WORDS: RGBColor = RGBColor(0x9C, 0x3D, 0x75);
 pub(super) const GRID: RGBColor = RGBColor(0xE4, 0xE4, 0xE4);
 /// Room left around what must be seen, as a share of its extent: for the labels above the start and below the chosen design.
 pub(super) const MARGIN: f64 = 0.12;
@@ -29,12 +32,12 @@ pub(super) type Chart<'a, 'b> =
 pub(super) type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 pub(super) type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
-/// A picture of a height as SVG.
+/// A picture of a name (words of this program) and a height as SVG.
 ///
 /// # Errors
 /// The drawing library refuses.
 pub(super) fn svg(
-    height: i32,
+    (name, height): (&str, i32),
     draw: impl FnOnce(&Area<'_>) -> Drawn,
 ) -> Result<String, DesignError> {
     let mut svg = String::new();
@@ -44,7 +47,11 @@ pub(super) fn svg(
     drop(root);
     drawn.map_err(|error| DesignError::Picture(error.to_string()))?;
     let size = format!("width=\"{WIDTH}\" height=\"{height}\"");
-    let shown = format!("width=\"{}\" height=\"{}\"", WIDTH / PX, height / PX);
+    let shown = format!(
+        "width=\"{}\" height=\"{}\" role=\"img\" aria-label=\"{name}\"",
+        WIDTH / PX,
+        height / PX
+    );
     Ok(svg.replacen(&size, &shown, 1))
 }
 
