@@ -60,6 +60,7 @@ mod source;
 mod statements;
 mod stiff_reference;
 mod stops;
+mod terms;
 mod uniformity;
 mod vary;
 mod view;
