@@ -45,7 +45,7 @@
   class Space {
     constructor(place) {
       this.place = place;
-      this.told = JSON.parse(place.querySelector("script").textContent);
+      this.content = JSON.parse(place.querySelector("script").textContent);
       this.view = 0;
       this.picked = null;
       this.hovered = null;
@@ -72,8 +72,8 @@
       lamp.position.set(-0.7, 0.5, 0.8);
       this.camera.add(lamp);
       this.scene.add(this.camera);
-      this.lines = this.told.lines.map(unpacked);
-      this.bodies = this.told.bodies.map((body) => this.body(body));
+      this.lines = this.content.lines.map(unpacked);
+      this.bodies = this.content.bodies.map((body) => this.body(body));
       this.build_lines();
       this.marks();
       this.steer();
@@ -87,17 +87,17 @@
 
     // What stands around the canvas.
     frame(canvas) {
-      const { told, place } = this;
+      const { content, place } = this;
       place.classList.add("live");
       this.canvas = canvas;
-      const name = `${told.name}. Arrow keys turn it, plus and minus zoom, 0 shows all again.`;
+      const name = `${content.name}. Arrow keys turn it, plus and minus zoom, 0 shows all again.`;
       Object.entries({ tabindex: "0", role: "application", "aria-label": name }).forEach(([key, value]) => canvas.setAttribute(key, value));
       this.over = element("div", { class: "over" });
       this.tip = element("div", { class: "tip", hidden: "" });
       this.bar = element("div", { class: "bar" }, element("i"), element("span"));
       this.triad = element("div", { class: "triad", role: "img", "aria-label": "axes x, y, z" });
       this.stage = element("div", { class: "stage" }, this.canvas, this.over, this.triad, this.bar, this.tip);
-      this.buttons = told.views.map((view, which) => {
+      this.buttons = content.views.map((view, which) => {
         const button = element("button", { type: "button" }, view.name);
         button.addEventListener("click", () => { this.pick(null); this.look(which); });
         return button;
@@ -105,12 +105,12 @@
       const reset = element("button", { type: "button", class: "reset" }, "Reset view");
       reset.addEventListener("click", () => this.look(this.view));
       const how = element("span", { class: "how" }, matchMedia("(pointer: coarse)").matches ? "One finger turns, two move and zoom, a tap picks." : "Drag turns, right drag moves, the wheel zooms once the drawing is clicked.");
-      this.tools = element("div", { class: "tools" }, ...(told.views.length > 1 ? this.buttons : []), reset, how);
+      this.tools = element("div", { class: "tools" }, ...(content.views.length > 1 ? this.buttons : []), reset, how);
       const parts = [this.tools, this.stage];
       this.shades = element("div", { class: "shades-of-view" });
-      if (told.legend) parts.push(this.shades);
-      if (told.words) parts.push(element("p", { class: "hint" }, told.words));
-      if (told.lines.some((line) => line.lines || line.remark)) {
+      if (content.legend) parts.push(this.shades);
+      if (content.words) parts.push(element("p", { class: "hint" }, content.words));
+      if (content.lines.some((line) => line.lines || line.remark)) {
         this.panel = element("aside", { class: "panel", "aria-live": "polite" });
         parts.push(this.panel);
         place.classList.add("picks");
@@ -131,17 +131,17 @@
       return legend;
     }
 
-    body(told) {
+    body(content) {
       const geometry = new THREE.BufferGeometry();
-      geometry.setAttribute("position", new THREE.BufferAttribute(floats(told.corners), 3));
-      const triangles = new Uint32Array(buffer(told.triangles));
+      geometry.setAttribute("position", new THREE.BufferAttribute(floats(content.corners), 3));
+      const triangles = new Uint32Array(buffer(content.triangles));
       geometry.setIndex(new THREE.BufferAttribute(triangles, 1));
       // Faces that meet at a sharp edge do not share corners.
       geometry.computeVertexNormals();
-      const material = new THREE.MeshLambertMaterial(told.shade ? {} : back(this.renderer.getPixelRatio()));
+      const material = new THREE.MeshLambertMaterial(content.shade ? {} : back(this.renderer.getPixelRatio()));
       const mesh = new THREE.Mesh(geometry, material);
       mesh.layers.enable(1);
-      mesh.userData = { told, material };
+      mesh.userData = { content, material };
       mesh.renderOrder = -2;
       this.scene.add(mesh);
       return mesh;
@@ -202,7 +202,7 @@
       };
       this.dark = dark;
       this.begin = begin();
-      const { arrow } = this.told;
+      const { arrow } = this.content;
       if (!arrow) return;
       this.arrow = new THREE.Group();
       const paint = new THREE.MeshBasicMaterial({ depthTest: false });
@@ -290,8 +290,8 @@
     paint() {
       const colour = (name) => new THREE.Color(css(name));
       for (const mesh of this.bodies) {
-        const { told, material } = mesh.userData;
-        material.color = told.shade ? new THREE.Color(hex(told.shade)) : colour("part");
+        const { content, material } = mesh.userData;
+        material.color = content.shade ? new THREE.Color(hex(content.shade)) : colour("part");
       }
       for (const { object, lines, pale } of this.drawn) {
         if (!lines) continue;
@@ -317,16 +317,16 @@
     shown(thing) { return thing.view === null || thing.view === this.view; }
 
     // A view, as it begins.
-    look(which, eye = this.told.views[which].eye) {
+    look(which, eye = this.content.views[which].eye) {
       this.view = which;
       this.buttons.forEach((button, at) => button.setAttribute("aria-pressed", String(at === which)));
-      for (const mesh of this.bodies) mesh.visible = this.shown(mesh.userData.told);
+      for (const mesh of this.bodies) mesh.visible = this.shown(mesh.userData.content);
       // A line with a meaning of its own stands alone.
       const own = this.lines.find((line) => line.legend && line.view === which);
       for (const one of this.drawn) one.object.visible = this.shown(one) && !(own && one.view === null);
-      const legend = own?.legend ?? this.told.legend;
+      const legend = own?.legend ?? this.content.legend;
       if (legend) this.shades.replaceChildren(this.legend(legend));
-      if (this.arrow) this.arrow.visible = this.shown(this.told.arrow);
+      if (this.arrow) this.arrow.visible = this.shown(this.content.arrow);
       const meshes = this.bodies.filter((mesh) => mesh.visible);
       const towards = new THREE.Vector3(...eye).normalize();
       const right = new THREE.Vector3(0, 0, 1).cross(towards);
@@ -363,7 +363,7 @@
     show(line) {
       if (line.view !== null && line.view !== this.view) this.look(line.view);
       if (this.samples(line).some((sample) => this.seen(line, sample))) return;
-      const eye = line.outward.clone().multiplyScalar(1.2).add(new THREE.Vector3(...this.told.views[this.view].eye).normalize().multiplyScalar(0.5));
+      const eye = line.outward.clone().multiplyScalar(1.2).add(new THREE.Vector3(...this.content.views[this.view].eye).normalize().multiplyScalar(0.5));
       this.look(this.view, eye.toArray());
     }
 
@@ -516,7 +516,7 @@
         const length = Math.hypot(...away);
         word(at, "start", length > 1 ? [(32 * away[0]) / length, (20 * away[1]) / length] : undefined);
       }
-      const { arrow } = this.told;
+      const { arrow } = this.content;
       if (arrow && this.arrow.visible) word(() => this.arrow.localToWorld(new THREE.Vector3(0, -84, 0)), arrow.label);
       return made;
     }
@@ -550,7 +550,7 @@
       if (line !== this.hovered) {
         this.hovered = line;
         this.canvas.style.cursor = line ? "pointer" : "";
-        // What was told last stays: on the way to it the pointer leaves the line.
+        // What was shown last stays: on the way to it the pointer leaves the line.
         if (line || this.picked) this.tell();
         this.mark();
         this.ask();
@@ -566,12 +566,12 @@
 
     brief({ line, segment }) {
       const rows = [element("b", {}, line.id)];
-      const legend = line.legend ?? this.told.legend;
+      const legend = line.legend ?? this.content.legend;
       if (segment !== undefined && line.values.length && legend) {
         const value = line.values[segment];
         const from = 0.5 * (line.stations[segment] + line.stations[segment + 1]);
-        const told = Number.isFinite(value) ? `${legend.unsigned ? "" : value < 0 ? "−" : "+"}${Math.abs(value).toPrecision(3)} ${legend.unit}` : legend.none?.[1] ?? "–";
-        rows.push(element("span", {}, `at ${from.toFixed(1)} mm: ${legend.title} ${told}`));
+        const content = Number.isFinite(value) ? `${legend.unsigned ? "" : value < 0 ? "−" : "+"}${Math.abs(value).toPrecision(3)} ${legend.unit}` : legend.none?.[1] ?? "–";
+        rows.push(element("span", {}, `at ${from.toFixed(1)} mm: ${legend.title} ${content}`));
         return rows;
       }
       rows.push(element("span", {}, line.facts.slice(0, 2).map(([, value]) => value).join(", ")));

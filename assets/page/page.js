@@ -35,34 +35,34 @@
     Plain: { width: 1.5 }, Dashed: { width: 1.5, dash: [6, 4] }, Raw: { width: 1, share: 0.7 }, Truth: { width: 2.2 },
     Points: { points: true }, Area: { width: 0.5, share: 0.6 },
   };
-  const series = (told) => {
-    const stroke = strokes[told.stroke];
-    const paint = () => (stroke.share ? faded(told.role, stroke.share) : colour(told.role));
-    const built = { label: told.label, stroke: paint, width: stroke.width, dash: stroke.dash, spanGaps: told.joined, value: (_, v) => shown(v), scale: "y" };
+  const series = (content) => {
+    const stroke = strokes[content.stroke];
+    const paint = () => (stroke.share ? faded(content.role, stroke.share) : colour(content.role));
+    const built = { label: content.label, stroke: paint, width: stroke.width, dash: stroke.dash, spanGaps: content.joined, value: (_, v) => shown(v), scale: "y" };
     if (stroke.points) {
       built.paths = () => null;
-      built.points = { show: true, size: 4, width: 0, stroke: paint, fill: () => faded(told.role, 0.55), filter: null };
+      built.points = { show: true, size: 4, width: 0, stroke: paint, fill: () => faded(content.role, 0.55), filter: null };
     } else {
       built.points = { show: false };
-      if (told.stepwise) built.paths = uPlot.paths.stepped({ align: 1 });
+      if (content.stepwise) built.paths = uPlot.paths.stepped({ align: 1 });
     }
     return built;
   };
 
   // Horizontal bands, flagged times and event lines, behind the signals.
-  const backdrop = (told) => (u) => {
+  const backdrop = (content) => (u) => {
     const { ctx, bbox } = u;
     const ratio = uPlot.pxRatio;
     ctx.save();
     ctx.beginPath();
     ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
     ctx.clip();
-    for (const span of told.spans) {
+    for (const span of content.spans) {
       const [from, to] = [u.valToPos(span[0], "x", true), u.valToPos(span[1], "x", true)];
       ctx.fillStyle = faded("bad", 0.12);
       ctx.fillRect(from, bbox.top, Math.max(to - from, ratio), bbox.height);
     }
-    for (const band of told.bands) {
+    for (const band of content.bands) {
       const [top, bottom] = [u.valToPos(band.to, "y", true), u.valToPos(band.from, "y", true)];
       ctx.fillStyle = faded("Band", 0.25);
       ctx.fillRect(bbox.left, top, bbox.width, Math.max(bottom - top, ratio));
@@ -70,7 +70,7 @@
     ctx.strokeStyle = colour("quiet");
     ctx.lineWidth = ratio;
     ctx.setLineDash([3 * ratio, 3 * ratio]);
-    for (const marker of told.markers) {
+    for (const marker of content.markers) {
       const at = u.valToPos(marker.at, "x", true);
       ctx.beginPath();
       ctx.moveTo(at, bbox.top);
@@ -78,16 +78,16 @@
       ctx.stroke();
     }
     ctx.restore();
-    names(told)(u);
+    names(content)(u);
   };
 
   // Names of the phases in a band of their own above the signals, each from where its phase begins, one that would lie on another a line lower.
   const line = 14;
-  const lines = (told) => Math.min(3, told.markers.length);
-  const names = (told) => (u) => {
+  const lines = (content) => Math.min(3, content.markers.length);
+  const names = (content) => (u) => {
     const { ctx, bbox } = u;
     const ratio = uPlot.pxRatio;
-    const [left, right, top] = [bbox.left, bbox.left + bbox.width, bbox.top - (lines(told) * line + 4) * ratio];
+    const [left, right, top] = [bbox.left, bbox.left + bbox.width, bbox.top - (lines(content) * line + 4) * ratio];
     u.names = [];
     ctx.save();
     ctx.font = `${11 * ratio}px system-ui, sans-serif`;
@@ -95,10 +95,10 @@
     ctx.textBaseline = "middle";
     ctx.strokeStyle = ctx.fillStyle = colour("quiet");
     ctx.lineWidth = ratio;
-    const ends = Array(lines(told)).fill(-Infinity);
-    told.markers.forEach((marker, which) => {
+    const ends = Array(lines(content)).fill(-Infinity);
+    content.markers.forEach((marker, which) => {
       const begins = u.valToPos(marker.at, "x", true);
-      const next = told.markers[which + 1];
+      const next = content.markers[which + 1];
       const over = next ? u.valToPos(next.at, "x", true) : Infinity;
       if (begins > right || over <= left) return;
       const width = ctx.measureText(marker.label).width;
@@ -150,7 +150,7 @@
   const ends = (u) => [u.data[0][0], u.data[0].at(-1)];
   const all = (u) => { const [min, max] = ends(u); u.setScale("x", { min, max }); };
 
-  const alike = (chart) => charts.filter((other) => other !== chart && other.plot && chart.told.group && other.told.group === chart.told.group);
+  const alike = (chart) => charts.filter((other) => other !== chart && other.plot && chart.content.group && other.content.group === chart.content.group);
   const zoomed = (chart) => (u, scale) => {
     if (scale !== "x") return;
     const { min, max } = u.scales.x;
@@ -165,11 +165,11 @@
   };
 
   const onScreen = (place) => ({ width: place.clientWidth, height: 280 });
-  // The style fits it to the paper, whose width no script is told: sharp enough, and its texts not too small.
+  // The style fits it to the paper, whose width no script knows: sharp enough, and its texts not too small.
   const onPaper = { width: 900, height: 280 };
   const build = (chart) => {
     if (chart.plot) return;
-    const told = chart.told;
+    const content = chart.content;
     const place = chart.figure.querySelector(".plot");
     // Its group may have been zoomed while it was out of sight.
     const shared = alike(chart).find((other) => other.figure.classList.contains("zoomed"))?.plot.scales.x;
@@ -178,27 +178,27 @@
     const plain = (_, values) => values.map((v) => String(Number(v.toPrecision(6))));
     const options = {
       ...onScreen(place),
-      padding: [told.markers.length ? lines(told) * line + 8 : 10, 12, 0, 0],
-      cursor: { sync: told.group ? { key: told.group, setSeries: false } : undefined, drag: { x: true, y: false, uni: 20 }, points: { size: 6 } },
+      padding: [content.markers.length ? lines(content) * line + 8 : 10, 12, 0, 0],
+      cursor: { sync: content.group ? { key: content.group, setSeries: false } : undefined, drag: { x: true, y: false, uni: 20 }, points: { size: 6 } },
       legend: { live: true },
-      scales: { x: { time: false, min: shared?.min, max: shared?.max }, y: { range: (_, min, max) => told.within ?? (min == null ? [0, 1] : uPlot.rangeNum(min, max, 0.08, true)) } },
-      axes: [{ ...axis, label: told.x, values: plain, size: 30, labelSize: 18 }, { ...axis, label: told.y, values: plain, size: (u, values) => (values ? 22 + 7 * largest(values.map(Number)) : 60) }],
-      series: [{ label: told.x, value: (_, v) => shown(v) }, ...told.series.map(series)],
-      bands: told.areas.map(([low, high]) => ({ series: [high + 1, low + 1], fill: () => faded("Band", 0.3) })),
-      hooks: { drawClear: [backdrop(told)], setScale: [zoomed(chart)], init: [touch] },
+      scales: { x: { time: false, min: shared?.min, max: shared?.max }, y: { range: (_, min, max) => content.within ?? (min == null ? [0, 1] : uPlot.rangeNum(min, max, 0.08, true)) } },
+      axes: [{ ...axis, label: content.x, values: plain, size: 30, labelSize: 18 }, { ...axis, label: content.y, values: plain, size: (u, values) => (values ? 22 + 7 * largest(values.map(Number)) : 60) }],
+      series: [{ label: content.x, value: (_, v) => shown(v) }, ...content.series.map(series)],
+      bands: content.areas.map(([low, high]) => ({ series: [high + 1, low + 1], fill: () => faded("Band", 0.3) })),
+      hooks: { drawClear: [backdrop(content)], setScale: [zoomed(chart)], init: [touch] },
     };
-    const data = [numbers(told.at), ...told.series.map((one) => numbers(one.values))];
+    const data = [numbers(content.at), ...content.series.map((one) => numbers(one.values))];
     chart.plot = new uPlot(options, data, place);
     // The other edge of an area has no name of its own.
     const rows = place.querySelectorAll(".u-legend .u-series");
-    told.series.forEach((one, which) => { if (!one.label) rows[which + 1].style.display = "none"; });
+    content.series.forEach((one, which) => { if (!one.label) rows[which + 1].style.display = "none"; });
     place.setAttribute("data-drawn", "");
     new ResizeObserver(() => chart.plot.setSize(onScreen(place))).observe(place);
     chart.figure.querySelector(".reset").addEventListener("click", () => all(chart.plot));
   };
 
   for (const figure of document.querySelectorAll("figure.chart")) {
-    charts.push({ figure, told: JSON.parse(figure.querySelector("script").textContent), plot: null });
+    charts.push({ figure, content: JSON.parse(figure.querySelector("script").textContent), plot: null });
   }
   // Those out of sight wait.
   const watch = new IntersectionObserver((entries) => {

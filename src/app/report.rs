@@ -133,8 +133,8 @@ pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
     let out = arguments.out.clone().unwrap_or_else(default);
     write_text(&out, &text)?;
     if arguments.json {
-        let told = serde_json::json!({"kind": kind, "file": out.display().to_string(), "bytes": text.len()});
-        say(&format!("{told}\n"))?;
+        let message = serde_json::json!({"kind": kind, "file": out.display().to_string(), "bytes": text.len()});
+        say(&format!("{message}\n"))?;
     } else if !arguments.quiet {
         let size = text.len() as f64 / 1e6;
         say(&format!(

@@ -48,12 +48,12 @@ pub fn svg(
     bodies: &[Footprint],
 ) -> Result<String, String> {
     let mut text = String::new();
-    let standing = Standing {
+    let surroundings = Surroundings {
         robot,
         part,
         bodies,
     };
-    draw(&mut text, title, grid, tried, &standing).map_err(|error| error.to_string())?;
+    draw(&mut text, title, grid, tried, &surroundings).map_err(|error| error.to_string())?;
     let size = format!("width=\"{WIDTH}\" height=\"{HEIGHT}\"");
     let shown = format!(
         "width=\"{}\" height=\"{}\" role=\"img\" aria-label=\"where the part can lie, from above\"",
@@ -64,7 +64,7 @@ pub fn svg(
 }
 
 /// What stands in the cell.
-struct Standing<'a> {
+struct Surroundings<'a> {
     robot: DVec3,
     part: DVec3,
     bodies: &'a [Footprint],
@@ -83,7 +83,7 @@ fn draw(
     title: &str,
     grid: &PlaceGrid,
     tried: &[TriedPlace],
-    standing: &Standing<'_>,
+    surroundings: &Surroundings<'_>,
 ) -> Drawn {
     let root = SVGBackend::with_string(text, (WIDTH as u32, HEIGHT as u32)).into_drawing_area();
     root.fill(&WHITE)?;
@@ -101,7 +101,7 @@ fn draw(
         (ends[0] - half, ends[1] + half)
     };
     let (across, up) = (span(&grid.x, half[0]), span(&grid.y, half[1]));
-    let (across, up) = with_room(across, up, standing);
+    let (across, up) = with_room(across, up, surroundings);
     let (across, up) = of_equal_scale(across, up);
     let mut chart = ChartBuilder::on(&root)
         .margin_top(52 * PX)
@@ -135,10 +135,10 @@ fn draw(
         };
         chart.draw_series([Rectangle::new(corners, colour.filled())])?;
     }
-    reach(&mut chart, [across, up], standing.bodies)?;
-    outlines(&mut chart, [across, up], standing.bodies)?;
-    marks(&mut chart, tried, [across, up], standing)?;
-    legend(&root, tried, standing.bodies)?;
+    reach(&mut chart, [across, up], surroundings.bodies)?;
+    outlines(&mut chart, [across, up], surroundings.bodies)?;
+    marks(&mut chart, tried, [across, up], surroundings)?;
+    legend(&root, tried, surroundings.bodies)?;
     root.present()
 }
 
@@ -147,7 +147,7 @@ fn marks(
     chart: &mut Chart<'_, '_>,
     tried: &[TriedPlace],
     [across, up]: [(f64, f64); 2],
-    standing: &Standing<'_>,
+    surroundings: &Surroundings<'_>,
 ) -> Drawn {
     let left = Pos::new(HPos::Left, VPos::Center);
     let style = |size: i32| (FONT, size).into_font().color(&DARK).pos(left);
@@ -169,7 +169,7 @@ fn marks(
         (across.0..across.1).contains(&(1e3 * at.x)) && (up.0..up.1).contains(&(1e3 * at.y))
     };
     let best = best_places(tried).first().map(|(position, _)| *position);
-    let (robot, part) = (standing.robot, standing.part);
+    let (robot, part) = (surroundings.robot, surroundings.part);
     let marks = [
         (Some(robot), "robot"),
         (Some(part), "part now"),
@@ -180,7 +180,7 @@ fn marks(
             chart.draw_series([mark(at, word)])?;
         }
     }
-    for body in standing.bodies {
+    for body in surroundings.bodies {
         if body.kind == FootprintKind::Obstacle {
             let seen = clipped(&body.outline, [across, up]);
             if !seen.is_empty() {
@@ -275,10 +275,10 @@ fn clipped(outline: &[DVec2], [across, up]: [(f64, f64); 2]) -> Vec<DVec2> {
 fn with_room(
     across: (f64, f64),
     up: (f64, f64),
-    standing: &Standing<'_>,
+    surroundings: &Surroundings<'_>,
 ) -> ((f64, f64), (f64, f64)) {
     let own = |kinds: &[FootprintKind]| -> Vec<DVec2> {
-        let bodies = standing
+        let bodies = surroundings
             .bodies
             .iter()
             .filter(|body| kinds.contains(&body.kind));
@@ -288,12 +288,12 @@ fn with_room(
             .collect()
     };
     let mut seen = [across, up];
-    widen(&mut seen, &[1e3 * standing.robot.truncate()]);
+    widen(&mut seen, &[1e3 * surroundings.robot.truncate()]);
     widen(&mut seen, &own(&[FootprintKind::Base, FootprintKind::Link]));
     let about = seen;
     // Beyond as much again only their near part is seen.
     let near = about.map(|(low, high)| (low - 0.5 * (high - low), high + 0.5 * (high - low)));
-    for body in standing
+    for body in surroundings
         .bodies
         .iter()
         .filter(|b| b.kind == FootprintKind::Obstacle)

@@ -85,7 +85,7 @@ test("phase names stand above the signals, zoomed too", async () => {
       for (const other of all.slice(which + 1)) assert.ok(name.right <= other.left || name.bottom <= other.top || other.bottom <= name.top, `${name.label} on ${other.label}`);
     }
     // The phase that is looked at is named though its beginning is out of sight.
-    await page.evaluate(() => { const { plot } = window.idcCharts[0]; const [, , follow, retract] = window.idcCharts[0].told.markers; plot.setScale("x", { min: follow.at + 0.4 * (retract.at - follow.at), max: follow.at + 0.6 * (retract.at - follow.at) }); });
+    await page.evaluate(() => { const { plot } = window.idcCharts[0]; const [, , follow, retract] = window.idcCharts[0].content.markers; plot.setScale("x", { min: follow.at + 0.4 * (retract.at - follow.at), max: follow.at + 0.6 * (retract.at - follow.at) }); });
     await page.waitForTimeout(100);
     const [zoomed] = await names();
     assert.deepEqual(zoomed.map((name) => name.label), ["follow"]);
@@ -94,7 +94,7 @@ test("phase names stand above the signals, zoomed too", async () => {
 });
 
 // Ranges of the charts of the run that are drawn.
-const shown = (page) => page.evaluate(() => window.idcCharts.filter((chart) => chart.plot && chart.told.group === "run").map((chart) => [chart.plot.scales.x.min, chart.plot.scales.x.max]));
+const shown = (page) => page.evaluate(() => window.idcCharts.filter((chart) => chart.plot && chart.content.group === "run").map((chart) => [chart.plot.scales.x.min, chart.plot.scales.x.max]));
 // Draws over the second quarter of the first chart.
 const zoom = async (page) => {
   const box = await page.locator("figure.chart .u-over").first().boundingBox();
