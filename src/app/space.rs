@@ -58,8 +58,13 @@ pub(super) fn of_run(scene: &Scene, moment: f64) -> Option<Drawing> {
     Some(Drawing {
         name: "The part, its edge in the colours of the force error, and the cell".to_owned(),
         words: format!(
-            "The mean force error of each of {} pieces of the edge while following. The whole cell is that in the middle of following; its arrow is the contact force with its friction.{}",
+            "The mean force error of each of {} pieces of the edge while following. The whole cell is that in the middle of following; its arrow is the contact force with its friction.{}{}",
             scene.edge_path.relative_force_error.len(),
+            match scene.finished_edge {
+                Some(_) =>
+                    " The finished edge is that after all passes, ends and all, each piece in the colour of the leg that is farthest out of tolerance: green within it, blue too little, orange too much.",
+                None => "",
+            },
             simplified(&solids).unwrap_or_default()
         ),
         views,

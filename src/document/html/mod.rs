@@ -17,8 +17,8 @@ const SPACE_SCRIPT: &str = include_str!("../../../assets/page/drawing.js");
 /// Nothing may be asked for over a network.
 const POLICY: &str =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
-/// Numbers on a page at most: four bytes and a third of text each, so that the page stays below 3 MB.
-const MOST_NUMBERS: usize = 300_000;
+/// Numbers on a page at most: four bytes and a third of text each, of which a report of a run has half in use, so that it stays below 1.5 MB.
+const MOST_NUMBERS: usize = 240_000;
 /// Numbers that small charts keep beside large ones: of all charts, and of one at most.
 const LEAST_NUMBERS: [usize; 2] = [150_000, 4000];
 
@@ -121,8 +121,11 @@ fn block(block_of: &Block<'_>, budget: &Budget) -> Markup {
             Block::Heading(text) => h3 { (text) },
             Block::Paragraph(text) => p { (bound(text)) },
             Block::Hint(text) => p.hint { (bound(text)) },
+            Block::Table(of) if of.rows.is_empty() => p.hint { (of.caption) " None." },
             Block::Table(of) => (table(of)),
+            Block::Panel(of) if nothing_happened(of) => p { b { (of.title) } ": 0 throughout." },
             Block::Panel(of) => (chart(of, budget)),
+            Block::Strip(of) if of.rows.iter().all(|(_, spans)| spans.is_empty()) => p.hint { "At no time." },
             Block::Strip(of) => (strip(of)),
             Block::Lines(text) => pre { (text) },
             // Drawn by src/figure, whose texts are escaped.
@@ -139,6 +142,12 @@ fn block(block_of: &Block<'_>, budget: &Budget) -> Markup {
             },
         }
     }
+}
+
+/// Whether all that a chart would show is a line at zero.
+fn nothing_happened(panel: &Panel<'_>) -> bool {
+    let mut values = panel.series.iter().flat_map(|series| series.values.iter());
+    values.all(|value| *value == 0.0 || value.is_nan())
 }
 
 // Drawn by src/drawing, whose texts are its own.
@@ -241,6 +250,32 @@ fn anchor(title: &str) -> String {
 mod tests {
     use super::*;
     use crate::document::{Panel, Role, Series, Stroke};
+
+    #[test]
+    fn where_nothing_happened_stands_a_line() {
+        let chart = |values: Vec<f64>| {
+            let times = vec![0.0, 1.0];
+            let series = Series::new("force", times, values, Role::Force, Stroke::Plain);
+            let panel = Panel {
+                title: "Seals".to_owned(),
+                series: vec![series],
+                ..Panel::default()
+            };
+            html(&Document {
+                sections: vec![Section::new("All", vec![Block::Panel(panel)])],
+                ..Document::default()
+            })
+        };
+        let still = chart(vec![0.0, -0.0]);
+        assert!(still.contains("<b>Seals</b>: 0 throughout.") && !still.contains("<figure"));
+        assert!(chart(vec![0.0, 1e-9]).contains("<figure"));
+        let table = Table::new("Changes.", &["day"], Vec::new());
+        let text = html(&Document {
+            sections: vec![Section::new("All", vec![Block::Table(table)])],
+            ..Document::default()
+        });
+        assert!(text.contains("Changes. None.") && !text.contains("<table"));
+    }
 
     #[test]
     fn a_page_holds_all_and_asks_for_nothing() {
