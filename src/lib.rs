@@ -94,7 +94,6 @@ pub mod quantity;
 pub mod recording;
 pub mod removal;
 pub mod replay;
-#[cfg(feature = "cli")]
 pub mod report;
 pub mod rig;
 pub mod run;

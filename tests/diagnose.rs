@@ -99,7 +99,7 @@ fn a_planted_force_is_found_reported_and_kept() {
     );
     let words = account.split_whitespace().collect::<Vec<_>>().join(" ");
     for said in [
-        "case: missing: axial_force_offset",
+        "Missing: axial force offset",
         "differs from the nominal model",
         "The regulator explains its own recording",
         "Along its measured motion the piston lacks a force of",
@@ -171,10 +171,7 @@ fn nothing_is_found_where_nothing_was_planted() {
     assert_eq!(answer["explained"], "fully");
     assert_eq!(answer["explained_share"], Value::Null);
     let account = std::fs::read_to_string(bench.path("out/account.txt")).unwrap();
-    assert!(
-        account.starts_with("case: nothing is missing\n"),
-        "{account}"
-    );
+    assert!(account.contains("\nNothing is missing.\n"), "{account}");
     let improved = std::fs::read_to_string(bench.path("out/improved.toml")).unwrap();
     assert!(!improved.contains("[[effect]]"));
 }

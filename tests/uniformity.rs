@@ -6,7 +6,7 @@ use idc_cell::scenario::{BurrScenario, Scenario};
 use crate::common::{run, scenario};
 
 /// The scenario's own bounds that its run does not keep.
-fn broken_bounds(scenario: Scenario) -> Vec<&'static str> {
+fn broken_bounds(scenario: Scenario) -> Vec<String> {
     let expectations = scenario.expect.clone();
     assert!(!expectations.is_empty());
     let summary = run(scenario).summary;
@@ -14,7 +14,7 @@ fn broken_bounds(scenario: Scenario) -> Vec<&'static str> {
     verdicts
         .iter()
         .filter(|v| !v.kept)
-        .map(|v| v.metric)
+        .map(|v| v.metric.to_string())
         .collect()
 }
 
@@ -26,7 +26,7 @@ fn guarded(name: &str, disturb: fn(&mut Scenario)) {
     assert_eq!(broken_bounds(nominal), Vec::<&str>::new(), "{name}");
     let broken = broken_bounds(disturbed);
     assert!(
-        broken.contains(&"force_standard_deviation_n"),
+        broken.contains(&"force_standard_deviation_n".to_owned()),
         "{name}: the disturbance went unseen: {broken:?}"
     );
 }

@@ -197,6 +197,31 @@
     chart.figure.querySelector(".reset").addEventListener("click", () => all(chart.plot));
   };
 
+  // Rows by a column: numbers as numbers, the rest as words; again, the other way round.
+  for (const table of document.querySelectorAll("table.sortable")) {
+    const body = table.tBodies[0];
+    for (const [index, head] of [...table.tHead.rows[0].cells].entries()) {
+      if (!head.textContent) continue;
+      const button = document.createElement("button");
+      button.type = "button";
+      button.className = "sort";
+      button.append(...head.childNodes);
+      head.append(button);
+      button.addEventListener("click", () => {
+        const way = head.getAttribute("aria-sort") === "ascending" ? -1 : 1;
+        for (const other of table.tHead.rows[0].cells) other.removeAttribute("aria-sort");
+        head.setAttribute("aria-sort", way > 0 ? "ascending" : "descending");
+        const key = (row) => row.cells[index].textContent.trim();
+        const order = (a, b) => {
+          const [x, y] = [parseFloat(key(a).replace("<", "")), parseFloat(key(b).replace("<", ""))];
+          if (Number.isNaN(x) || Number.isNaN(y)) return (Number.isNaN(x) - Number.isNaN(y)) || way * key(a).localeCompare(key(b));
+          return way * (x - y);
+        };
+        body.append(...[...body.rows].sort(order));
+      });
+    }
+  }
+
   for (const figure of document.querySelectorAll("figure.chart")) {
     charts.push({ figure, content: JSON.parse(figure.querySelector("script").textContent), plot: null });
   }

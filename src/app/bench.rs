@@ -2,17 +2,12 @@
 
 use std::time::Instant;
 
-use serde::Serialize;
-
 use super::bench_picture::scene_of;
 use super::error::AppError;
-use super::run::Source;
 use super::viewer::{PART_INTERVAL, Watch};
-use crate::metrics::{BenchSummary, BoundCheck, Timing};
-use crate::recording::provenance::Provenance;
+use crate::metrics::Timing;
 use crate::rig::Rig;
 use crate::run::{FinishedBench, run_bench};
-use crate::scenario::{AssumedValue, BenchScenario};
 
 /// Runs a rig's whole job, and hands what is recorded over to who watches it.
 pub(super) fn run_watched(
@@ -36,47 +31,4 @@ pub(super) fn run_watched(
     })?;
     finished.summary.timing = Some(Timing::since(start, finished.summary.duration_s));
     Ok(finished)
-}
-
-/// summary.json of a bench run.
-pub(super) fn document(
-    scenario: &BenchScenario,
-    finished: &FinishedBench,
-    expectations: &[BoundCheck],
-    source: &Source,
-    origin: &Provenance,
-) -> Result<String, AppError> {
-    #[derive(Serialize)]
-    struct Document<'a> {
-        schema: u32,
-        kind: &'static str,
-        scenario: &'a str,
-        title: &'a str,
-        /// Keys that have other values than in the scenario's file.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        set: Option<serde_json::Value>,
-        /// Reason for an early stop of the run; null if it ran to its end.
-        stopped: Option<String>,
-        summary: &'a BenchSummary,
-        expectations: &'a [BoundCheck],
-        samples: usize,
-        /// Values in use that nobody has measured in public.
-        #[serde(skip_serializing_if = "<[_]>::is_empty")]
-        #[serde(rename = "judged")]
-        assumed: &'a [AssumedValue],
-        provenance: &'a Provenance,
-    }
-    Ok(serde_json::to_string_pretty(&Document {
-        schema: 1,
-        kind: "bench",
-        scenario: &source.name,
-        title: &scenario.title,
-        set: source.set(),
-        stopped: finished.stop.as_ref().map(ToString::to_string),
-        summary: &finished.summary,
-        expectations,
-        samples: finished.recording.sample_count(),
-        assumed: &scenario.device.assumed,
-        provenance: origin,
-    })?)
 }

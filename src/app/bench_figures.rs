@@ -5,79 +5,9 @@ use crate::document::{Figure, Marker, Panel, Role, Series, Stroke};
 use crate::figure::{FigureError, svg};
 use crate::physics::valve::ValvePosition;
 use crate::recording::{Recording, schema};
+use crate::report::{FORCE, Line, PRESSURE, STROKE};
 use crate::scenario::BenchScenario;
 use crate::scenario::bench::CommandScenario;
-
-/// Quantity, label, role and stroke of a line, in the order of drawing.
-pub(super) type Line = (&'static str, &'static str, Role, Stroke);
-
-/// Lines of a picture of it.
-pub(super) const PRESSURE: [Line; 5] = [
-    (
-        schema::MEASURED_REGULATOR_PRESSURE,
-        "regulator, read",
-        Role::Measured,
-        Stroke::Raw,
-    ),
-    (
-        schema::CHAMBER_2_PRESSURE,
-        "chamber 2",
-        Role::Chamber2,
-        Stroke::Plain,
-    ),
-    (
-        schema::CHAMBER_1_PRESSURE,
-        "chamber 1",
-        Role::Chamber1,
-        Stroke::Plain,
-    ),
-    (
-        schema::REGULATOR_PRESSURE,
-        "regulator",
-        Role::Regulator,
-        Stroke::Truth,
-    ),
-    (schema::SET_PRESSURE, "set", Role::Command, Stroke::Dashed),
-];
-/// Lines of a picture of it.
-pub(super) const FORCE: [Line; 5] = [
-    (
-        schema::MEASURED_FORCE_UNFILTERED,
-        "load cell, read",
-        Role::Measured,
-        Stroke::Raw,
-    ),
-    (schema::CONTACT_FORCE, "true", Role::Force, Stroke::Truth),
-    (
-        schema::MEASURED_FORCE,
-        "load cell, filtered",
-        Role::Filtered,
-        Stroke::Plain,
-    ),
-    (
-        schema::ESTIMATED_FORCE,
-        "estimated",
-        Role::Estimate,
-        Stroke::Plain,
-    ),
-    (
-        schema::DESIRED_FORCE,
-        "desired",
-        Role::Command,
-        Stroke::Dashed,
-    ),
-];
-/// Lines of a picture of it.
-pub(super) const STROKE: [Line; 3] = [
-    (schema::MEASURED_STROKE, "read", Role::Measured, Stroke::Raw),
-    (schema::STROKE, "true", Role::Stroke, Stroke::Truth),
-    (
-        schema::SURFACE_POSITION,
-        "load's surface",
-        Role::Command,
-        Stroke::Dashed,
-    ),
-];
 
 /// Draws a run.
 ///

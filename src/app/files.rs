@@ -6,18 +6,17 @@ use std::path::{Path, PathBuf};
 
 use super::error::AppError;
 use super::space;
-use crate::document::Drawing;
 use crate::drawing;
 use crate::metrics::FOLLOW_PHASE;
 use crate::recording::atomic::{UnfinishedFolder, make_folder, write_text};
 use crate::recording::parquet::write_parquet;
 use crate::recording::provenance::Provenance;
 use crate::recording::{Recording, RecordingError};
+use crate::report::{SUMMARY, Sketches};
 use crate::scene::Scene;
 
 pub(super) const RECORDING: &str = "recording.rrd";
 pub(super) const SAMPLES: &str = "samples.parquet";
-pub(super) const SUMMARY: &str = "summary.json";
 pub(super) const FIGURES: &str = "figures.svg";
 pub(super) const CELL: &str = "cell.svg";
 pub(super) const EDGE: &str = "edge.svg";
@@ -186,9 +185,11 @@ impl OutputFolder {
         let recorded = written.1.transpose()?.is_some();
         write_text(&unfinished.path().join(SUMMARY), output.summary)?;
         write_text(&unfinished.path().join(REPORT), output.report)?;
-        write_text(&unfinished.path().join(CELL), &output.sketches.cell)?;
-        let mut names = vec![SAMPLES, SUMMARY, REPORT, CELL];
-        for (name, svg) in [(EDGE, &output.sketches.edge), (LEAN, &output.sketches.lean)] {
+        let mut names = vec![SAMPLES, SUMMARY, REPORT];
+        let Sketches {
+            cell, edge, lean, ..
+        } = output.sketches;
+        for (name, svg) in [(CELL, cell), (EDGE, edge), (LEAN, lean)] {
             if let Some(svg) = svg {
                 write_text(&unfinished.path().join(name), svg)?;
                 names.push(name);
@@ -294,30 +295,16 @@ pub(super) struct RunOutput<'a> {
     pub report: &'a str,
 }
 
-/// Pictures of a run.
-pub(super) struct Sketches {
-    /// The cell, or the bench.
-    pub cell: String,
-    /// The edge in the colours of its force error; none on a bench.
-    pub edge: Option<String>,
-    /// The tool across the edge; none on a bench.
-    pub lean: Option<String>,
-    /// Cell and edge in space; none on a bench.
-    pub space: Option<Drawing>,
-}
-
-impl Sketches {
-    /// The scene in the middle of following, or at the end of a run that does not follow an edge.
-    pub(super) fn of(scene: &Scene, recording: &Recording) -> Self {
-        let follow = recording.phase(FOLLOW_PHASE);
-        let end = recording.time().last().copied().unwrap_or_default();
-        let moment = follow.map_or(end, |follow| 0.5 * (follow.start + follow.end.min(end)));
-        Self {
-            cell: drawing::cell(scene, moment),
-            edge: drawing::edge(scene),
-            lean: None,
-            space: space::of_run(scene, moment),
-        }
+/// The scene in the middle of following, or at the end of a run that does not follow an edge.
+pub(super) fn sketches(scene: &Scene, recording: &Recording) -> Sketches {
+    let follow = recording.phase(FOLLOW_PHASE);
+    let end = recording.time().last().copied().unwrap_or_default();
+    let moment = follow.map_or(end, |follow| 0.5 * (follow.start + follow.end.min(end)));
+    Sketches {
+        cell: Some(drawing::cell(scene, moment)),
+        edge: drawing::edge(scene),
+        lean: None,
+        space: space::of_run(scene, moment),
     }
 }
 

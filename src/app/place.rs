@@ -5,13 +5,15 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::Args;
+use glam::DVec3;
 
 use super::error::{AppError, ExitCode};
 use super::files::{OverwritePolicy, prepare_file};
 use super::output::say;
 use super::progress;
 use crate::cell::Setup;
-use crate::place::{PlaceGrid, TriedPlace, best_places, footprints, svg, tried_places};
+use crate::document::{Block, Cell, Column, Document, Number, Section, Style, Table, Tone, text};
+use crate::place::{PlaceGrid, Possible, TriedPlace, best_places, footprints, svg, tried_places};
 use crate::recording::atomic::write_text;
 use crate::scenario::load;
 use crate::shell::word;
@@ -158,7 +160,7 @@ pub(super) fn run(arguments: &PlaceArguments) -> Result<ExitCode, AppError> {
     if arguments.json {
         say(&json(arguments, &tried))?;
     } else if !arguments.quiet {
-        say(&text(arguments, &tried))?;
+        say(&text(&document(arguments, &tried), Style::Plain))?;
     }
     Ok(if tried.iter().any(|place| place.outcome.is_ok()) {
         ExitCode::Done
@@ -222,13 +224,9 @@ fn json(arguments: &PlaceArguments, tried: &[TriedPlace]) -> String {
     format!("{document:#}\n")
 }
 
-fn text(arguments: &PlaceArguments, tried: &[TriedPlace]) -> String {
+/// Where the job can be done, what hinders it elsewhere, and the lines of the best position.
+fn document(arguments: &PlaceArguments, tried: &[TriedPlace]) -> Document<'static> {
     let best = best_places(tried);
-    let mut text = format!(
-        "the whole job can be done at {} of {} places\n",
-        best.len(),
-        tried.len()
-    );
     let mut hindered: Vec<(usize, &str)> = crate::place::Hindrance::ALL
         .into_iter()
         .map(|hindrance| {
@@ -238,36 +236,59 @@ fn text(arguments: &PlaceArguments, tried: &[TriedPlace]) -> String {
         .filter(|(count, _)| *count > 0)
         .collect();
     hindered.sort_unstable_by_key(|(count, _)| std::cmp::Reverse(*count));
-    if !hindered.is_empty() {
-        let reasons: Vec<_> = hindered
-            .iter()
-            .map(|(count, name)| format!("{name} {count}"))
-            .collect();
-        let _ = writeln!(text, "not possible for: {}", reasons.join(", "));
-    }
+    let reasons: Vec<String> = hindered
+        .iter()
+        .map(|(count, name)| format!("{name} {count}"))
+        .collect();
+    let lead = (!reasons.is_empty()).then(|| format!("Not possible for: {}.", reasons.join(", ")));
+    let row = |(position, possible): &(DVec3, Possible)| {
+        let [x, y, z] = position.to_array().map(shown);
+        vec![
+            Cell::from(format!("[{x}, {y}, {z}]")),
+            Cell::from(degrees(possible.roll).to_string()),
+            Cell::from(format!("{:.2}", possible.comfort)),
+            Number::new("", Some(possible.cycle_time), "s").into(),
+        ]
+    };
+    let mut sections = Vec::new();
     if let Some((position, possible)) = best.first() {
+        let columns = vec![
+            Column::of_words("position_mm"),
+            Column::of_numbers("roll_deg"),
+            Column::of_numbers("comfort"),
+            Column::of_numbers("cycle time"),
+        ];
+        let rows = best.iter().take(PRINTED).map(row).collect();
+        let table = Block::Table(Table::new("", columns, rows));
+        sections.push(Section::new("Best positions", vec![table]));
         let [x, y, z] = position.to_array().map(shown);
         let roll = degrees(possible.roll);
-        let _ = write!(text, "\n  comfort  cycle time  position_mm\n");
-        for (position, possible) in best.iter().take(PRINTED) {
-            let [x, y, z] = position.to_array().map(shown);
-            let _ = writeln!(
-                text,
-                "  {:7.2}  {:8.1} s  [{x}, {y}, {z}], roll_deg = {}",
-                possible.comfort,
-                possible.cycle_time,
-                degrees(possible.roll)
-            );
-        }
-        let _ = write!(
-            text,
-            "\nthe best, to paste into the scenario:\n\n[workpiece]\nposition_mm = [{x}, {y}, {z}]\n\n[process]\nroll_deg = {roll}\n\n\
-             run it: idc run {} --set 'workpiece.position_mm=[{x}, {y}, {z}]' --set process.roll_deg={roll}\n",
+        let lines = format!(
+            "[workpiece]\nposition_mm = [{x}, {y}, {z}]\n\n[process]\nroll_deg = {roll}\n\n\
+             idc run {} --set 'workpiece.position_mm=[{x}, {y}, {z}]' --set process.roll_deg={roll}",
             word(&arguments.scenario)
         );
+        let title = "The best one for the scenario, and as a run";
+        sections.push(Section::new(title, vec![Block::Lines(lines)]));
     }
     if let Some(out) = &arguments.out {
-        let _ = writeln!(text, "picture: {}", out.display());
+        let file = Block::File(out.display().to_string(), "the map of positions".to_owned());
+        sections.push(Section::new("Picture", vec![file]));
     }
-    text
+    Document {
+        title: "Positions of the part".to_owned(),
+        verdict: format!(
+            "The whole job can be done at {} of {} positions.",
+            best.len(),
+            tried.len()
+        ),
+        tone: if best.is_empty() {
+            Tone::Bad
+        } else {
+            Tone::Good
+        },
+        lead: lead.into_iter().collect(),
+        sections,
+        ..Document::default()
+    }
 }

@@ -1,46 +1,26 @@
 //! report.html: what a folder of results holds, as one file for a browser.
 
-mod charts;
-mod design;
-mod diagnosis;
-mod estimated;
-mod finished_edge;
-mod judged;
-mod provenance;
-mod robustness;
-mod run;
-mod run_result;
-mod signals;
-mod tables;
-
-use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use serde_json::Value;
 
 use super::diagnose::read_comparison;
 use super::error::{AppError, ExitCode};
 use super::files::{
     BALANCE, CELL, COMPARISON, DESIGN, DIAGNOSIS, DRAWING, EDGE, EDGE_PROFILE, FRONT, LEAN,
-    OverwritePolicy, REPORT, ROBUSTNESS, SAMPLES, SUMMARY, is_same, prepare_file,
+    OverwritePolicy, REPORT, ROBUSTNESS, SAMPLES, is_same, prepare_file,
 };
 use super::fleet::{self, FLEET};
 use super::output::say;
 use super::vary::{self, SWEEP};
+use crate::design::StudyDocument;
 use crate::diagnosis::answer::Answer;
-use crate::diagnosis::difference::comparison::Comparison;
 use crate::document::html;
-use crate::recording::RecordingError;
 use crate::recording::atomic::write_text;
 use crate::recording::csv::EdgeProfile;
 use crate::recording::parquet::read_parquet;
-
-pub(super) use charts::{lacking, robust_range, variable};
-pub(super) use provenance::sources;
-pub(super) use run::{of_run, page_of_run};
-pub(super) use run_result::RunResult;
-pub(super) use signals::{ROLES, chart_groups};
+use crate::recording::{Recording, RecordingError};
+use crate::report::{self, RunReport, SUMMARY, Sketches, StudyPictures};
 
 /// For the help.
 pub(super) const EXAMPLES: &str = "\
@@ -105,22 +85,28 @@ pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
         let answer: Answer = read_json(&folder.join(DIAGNOSIS))?;
         (
             "diagnosis",
-            of_diagnosis(&answer, &read_comparison(folder)?),
+            html(&report::diagnosis(&answer, &read_comparison(folder)?)),
         )
     } else if folder.join(SUMMARY).is_file() {
-        ("run", of_run(&read_run(folder)?))
+        ("run", run_page(folder)?)
     } else if folder.join(SWEEP).is_file() {
         let swept = read_json(&folder.join(SWEEP))?;
-        ("sweep", vary::page_of(&swept, &folder.join(vary::RUNS))?)
+        (
+            "sweep",
+            html(&vary::document(&swept, &folder.join(vary::RUNS))?),
+        )
     } else if folder.join(FLEET).is_file() {
         let found = read_json(&folder.join(FLEET))?;
-        ("fleet", fleet::page_of(&found)?)
+        ("fleet", html(&fleet::document(&found)?))
     } else if folder.join(DESIGN).is_file() {
-        let document = read_json(&folder.join(DESIGN))?;
-        let pictures =
+        let study: StudyDocument = read_json(&folder.join(DESIGN))?;
+        let [front, robustness] =
             [FRONT, ROBUSTNESS].map(|name| std::fs::read_to_string(folder.join(name)).ok());
-        let shown = pictures.each_ref().map(Option::as_deref);
-        ("study", of_design(&document, shown))
+        let pictures = StudyPictures {
+            front: front.as_deref(),
+            robustness: robustness.as_deref(),
+        };
+        ("study", html(&report::study(&study, pictures)))
     } else {
         return Err(AppError::NoResults {
             folder: folder.display().to_string(),
@@ -145,35 +131,31 @@ pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
     Ok(ExitCode::Done)
 }
 
-/// The page of a diagnosis.
-pub(super) fn of_diagnosis(answer: &Answer, comparison: &Comparison) -> String {
-    html(&diagnosis::page(answer, comparison))
-}
-
-/// The page of a design study: design.json, and front.svg and robustness.svg where there are such.
-pub(super) fn of_design(document: &Value, [front, robustness]: [Option<&str>; 2]) -> String {
-    let robustness = robustness::robustness(document, robustness);
-    html(&design::page(document, front, robustness))
-}
-
-/// A run as its folder has it.
-pub(super) fn read_run(folder: &Path) -> Result<RunResult<'static>, AppError> {
+/// The page of a run, from its folder.
+fn run_page(folder: &Path) -> Result<String, AppError> {
     let picture = |name: &str| std::fs::read_to_string(folder.join(name)).ok();
     // A bench has none, nor has a run of an older version.
     let space = folder.join(DRAWING);
-    let space = space.is_file().then(|| read_json(&space)).transpose()?;
     let profile = folder.join(EDGE_PROFILE);
     let profile = profile.is_file().then(|| EdgeProfile::read(&profile));
     let profile = profile.transpose()?;
-    Ok(RunResult {
-        document: read_json(&folder.join(SUMMARY))?,
-        recording: Cow::Owned(read_parquet(&folder.join(SAMPLES))?.recording),
-        cell: picture(CELL).map(Cow::Owned),
-        edge: picture(EDGE).map(Cow::Owned),
-        lean: picture(LEAN).map(Cow::Owned),
-        space: space.map(Cow::Owned),
-        profile: profile.map(Cow::Owned),
-    })
+    let report = RunReport {
+        result: &read_json(&folder.join(SUMMARY))?,
+        recording: &read_samples(folder)?,
+        sketches: &Sketches {
+            cell: picture(CELL),
+            edge: picture(EDGE),
+            lean: picture(LEAN),
+            space: space.is_file().then(|| read_json(&space)).transpose()?,
+        },
+        profile: profile.as_ref(),
+    };
+    Ok(html(&report.document()))
+}
+
+/// Signals of a run, from its folder.
+pub(super) fn read_samples(folder: &Path) -> Result<Recording, AppError> {
+    Ok(read_parquet(&folder.join(SAMPLES))?.recording)
 }
 
 pub(super) fn read_json<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T, AppError> {

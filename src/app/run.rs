@@ -13,7 +13,6 @@ pub(super) use cell_run::{Listener, RunPart};
 pub(super) use command::RunArguments;
 pub(super) use numbers::{Numbers, can_run, numbers};
 pub(super) use settings::blamed;
-pub(super) use source::Source;
 
 use super::error::{AppError, ExitCode};
 use super::files::{VARIED, is_same};

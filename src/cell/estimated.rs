@@ -1,6 +1,8 @@
 //! Masses of the arm that are estimated, and what that leaves open.
 
-use serde::Serialize;
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
 
 use crate::arm::EstimatedMass;
 use crate::path::torques::ranges;
@@ -10,7 +12,7 @@ use crate::path::{Plan, PlanRequest, TorqueRange};
 const INTERVAL: f64 = 2e-2;
 
 /// An arm some of whose masses are estimated.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EstimatedArm {
     /// How far each mass may be off, in per cent of it.
     pub mass_spread_percent: f64,
@@ -21,18 +23,18 @@ pub struct EstimatedArm {
 }
 
 /// A link with an estimated mass.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EstimatedLink {
     /// Its name.
     pub link: String,
     /// Its mass with all that is fixed to it [kg].
     pub mass_kg: f64,
     /// What of it is estimated.
-    pub estimated: &'static str,
+    pub estimated: Cow<'static, str>,
 }
 
 /// The largest torque of a drive along the planned motion.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EstimatedTorque {
     /// Joint.
     pub joint: String,
@@ -61,8 +63,8 @@ impl EstimatedArm {
             link: mass.link.clone(),
             mass_kg: mass.mass,
             estimated: match mass.by_volume {
-                true => "mass, centre and inertia",
-                false => "centre and inertia",
+                true => "mass, centre and inertia".into(),
+                false => "centre and inertia".into(),
             },
         };
         // Where a mass lies is as open as how much it is.

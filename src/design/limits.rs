@@ -13,7 +13,8 @@ pub enum LimitQuantity {
 }
 
 /// Which side is limited.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Side {
     /// `min`: for the force, it must be able to give so little; for a metric, at least so much.
     Min,

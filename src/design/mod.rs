@@ -28,13 +28,12 @@ mod picture;
 mod polish;
 mod refine;
 mod result;
-mod robustness;
+pub mod robustness;
 mod search;
 mod sensitivity;
 mod study;
 #[cfg(test)]
 mod tests;
-mod text;
 mod variable;
 
 pub use candidate::{Design, Evaluate, EvaluateError, Outcome, ScenarioOutcome};
@@ -44,10 +43,9 @@ pub use limits::{Limit, LimitQuantity, Side};
 pub use picture::{front_svg, robustness_svg};
 pub use result::{
     ActiveBound, ActiveLimit, Candidate, FrontPoint, LimitState, ObjectiveNames, Sensitivity,
-    StudyResult,
+    StudyDocument, StudyResult, VariedKey,
 };
 pub use robustness::{Distribution, Robustness, Scatter, Scattering};
 pub use search::{check_start, run};
 pub use study::{Objective, Over, Study, TradeOff, load};
-pub use text::text;
 pub use variable::{CatalogueEntry, Domain, Variable};

@@ -64,8 +64,8 @@ fn draw(root: &Area<'_>, result: &StudyResult, trade_off: &str) -> Drawn {
         .y_labels(8)
         .label_style((FONT, TEXT).into_font().color(&DARK))
         .axis_desc_style((FONT, TEXT).into_font().color(&DARK))
-        .x_desc(label(trade_off, names.trade_off_over))
-        .y_desc(label(&names.minimised, Some(names.minimised_over)))
+        .x_desc(label(trade_off, names.trade_off_over.as_deref()))
+        .y_desc(label(&names.minimised, Some(&names.minimised_over)))
         .x_label_formatter(&|value| tick(*value, across))
         .y_label_formatter(&|value| tick(*value, up))
         .draw()?;

@@ -1,15 +1,53 @@
 //! Result of a study. Serialises to design.json, where every number is in the unit that its name ends with.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::candidate::{Design, ScenarioOutcome};
+use super::limits::Side;
 use super::robustness::Robustness;
+use crate::recording::provenance::Provenance;
+use crate::scenario::AssumedValue;
+
+/// A study with what it was made of: design.json.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StudyDocument {
+    /// The study's file.
+    pub study: String,
+    /// Files of its scenarios.
+    pub scenarios: Vec<String>,
+    /// Variables, and their bounds.
+    pub variables: Vec<VariedKey>,
+    /// Its result.
+    #[serde(flatten)]
+    pub result: StudyResult,
+    /// Values in use that nobody has measured in public.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(rename = "judged")]
+    pub assumed: Vec<AssumedValue>,
+    /// Its origin.
+    #[serde(default)]
+    pub provenance: Provenance,
+}
+
+/// A key that is varied, in its own unit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct VariedKey {
+    /// The key.
+    pub key: String,
+    /// Least value.
+    pub min: f64,
+    /// Greatest value.
+    pub max: f64,
+    /// The values that there are, of a catalogue.
+    pub choices: Option<Vec<f64>>,
+}
 
 /// The result of a study.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StudyResult {
     /// Version of the format.
     pub schema: u32,
@@ -36,7 +74,7 @@ pub struct StudyResult {
     /// Effect of a change of one variable alone on the chosen design.
     pub sensitivities: Vec<Sensitivity>,
     /// What draws at the chosen design do, if the study asks for them.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub robustness: Option<Robustness>,
     /// Both objectives of every other design that keeps the limits, second one first; for the picture.
     #[serde(skip)]
@@ -44,26 +82,27 @@ pub struct StudyResult {
 }
 
 /// Names of both objectives.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ObjectiveNames {
     /// Metric that was minimised, unit included.
     pub minimised: String,
     /// `mean` or `worst` over the scenarios.
-    pub minimised_over: &'static str,
+    pub minimised_over: Cow<'static, str>,
     /// Metric or variable of the second objective, unit included.
     pub trade_off: Option<String>,
     /// `mean` or `worst` over the scenarios; none for a variable.
-    pub trade_off_over: Option<&'static str>,
+    pub trade_off_over: Option<Cow<'static, str>>,
     /// Number of scenarios.
     pub scenarios: usize,
 }
 
 /// A design with all that it does.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Candidate {
     /// Keys and values.
     pub design: Design,
     /// The objective, in its unit.
+    #[serde(deserialize_with = "number")]
     pub objective: f64,
     /// The second objective, in its unit.
     pub trade_off: Option<f64>,
@@ -79,17 +118,18 @@ pub struct Candidate {
 }
 
 /// A limit and what a design reaches.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LimitState {
     /// `impact_peak_n at most 400 N`.
     pub limit: String,
     /// Its key, unit included.
     pub key: String,
     /// `min` or `max`.
-    pub side: &'static str,
+    pub side: Side,
     /// Its bound, in that unit.
     pub bound: f64,
     /// Value that the design reaches, in that unit.
+    #[serde(deserialize_with = "number")]
     pub value: f64,
     /// Whether it is kept.
     pub kept: bool,
@@ -98,7 +138,7 @@ pub struct LimitState {
 }
 
 /// A point of the front.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FrontPoint {
     /// The second objective, in its unit.
     pub trade_off: f64,
@@ -109,12 +149,12 @@ pub struct FrontPoint {
 }
 
 /// A variable on its bound.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ActiveBound {
     /// Its key.
     pub variable: String,
     /// `min` or `max`.
-    pub side: &'static str,
+    pub side: Side,
     /// The bound, in the key's unit.
     pub bound: f64,
     /// Change of the objective if the variable alone went beyond it by a tenth, or to the next entry [%]; none if that cannot be simulated.
@@ -122,7 +162,7 @@ pub struct ActiveBound {
 }
 
 /// A limit that the chosen design just keeps.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ActiveLimit {
     /// `impact_peak_n at most 400 N`.
     pub limit: String,
@@ -135,7 +175,7 @@ pub struct ActiveLimit {
 }
 
 /// Effect of a change of one variable alone on the chosen design.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Sensitivity {
     /// Its key.
     pub variable: String,
@@ -151,6 +191,11 @@ pub struct Sensitivity {
     pub breaks: Vec<String>,
     /// Why it cannot be simulated.
     pub failure: Option<String>,
+}
+
+/// A number that JSON may have as `null` because it is none.
+fn number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(deserializer)?.unwrap_or(f64::NAN))
 }
 
 impl StudyResult {

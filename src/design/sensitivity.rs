@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use super::archive::{Archive, EvaluatedDesign, Scored};
 use super::error::DesignError;
 use super::goal::Goal;
+use super::limits::Side;
 use super::polish::polish;
 use super::refine::coordinates_of;
 use super::result::{ActiveBound, ActiveLimit, Sensitivity};
@@ -127,9 +128,10 @@ pub(super) fn active_bounds(
             Domain::Catalogue(_) => [*value == min, *value == max],
             _ => [coordinate <= ACTIVE, coordinate >= 1.0 - ACTIVE],
         };
-        for (side, bound, at_end, beyond) in
-            [("min", min, ends[0], -1.0), ("max", max, ends[1], 1.0)]
-        {
+        for (side, bound, at_end, beyond) in [
+            (Side::Min, min, ends[0], -1.0),
+            (Side::Max, max, ends[1], 1.0),
+        ] {
             let step = steps.iter().find(|step| {
                 step.variable == variable.key
                     && step.beyond_bound

@@ -1,21 +1,28 @@
-//! Pages for a browser: one HTML file with everything in it, for people who have nothing else installed.
+//! Results for people: one typed document, made once from a result, and its renderers, which know nothing of the subject.
 //!
-//! A [`Document`] is plain data. Its charts are drawn in the browser by uPlot (`assets/page/uplot/`) and what is seen in space by three.js
-//! (`assets/page/three/`), which stand in the file; the page may ask for nothing over a network, and says so to the browser (Content-Security-Policy).
-//! The same page gives the same bytes.
+//! A [`Document`] is plain data: a verdict, key numbers, sections of [`Block`]s. [`text`] writes it for a terminal or a file, [`markdown`] for the viewer and
+//! for repositories, [`html`] as one file for a browser, in which uPlot (`assets/page/uplot/`) draws the panels and three.js (`assets/page/three/`) what is seen
+//! in space; the page may ask for nothing over a network, and says so to the browser (Content-Security-Policy). A renderer that cannot draw a block names the
+//! file that shows it. The same document gives the same bytes.
 
 mod drawing;
 mod html;
+mod markdown;
+mod number;
 mod packed;
 mod panel;
+mod text;
 mod thin;
 
 pub use drawing::{Drawing, DrawnArrow, DrawnBody, DrawnLegend, DrawnLine, DrawnView, Shade};
 pub use html::html;
+pub use markdown::markdown;
+pub use number::Number;
 pub use panel::{Band, Figure, Horizontal, Marker, Panel, Role, Series, Stroke};
+pub use text::{Style, WIDTH, text, wrapped};
 pub use thin::kept;
 
-/// A page.
+/// A result for people.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Document<'a> {
     /// Its subject: `Diagnosis of case-14`.
@@ -30,8 +37,10 @@ pub struct Document<'a> {
     pub facts: Vec<Fact>,
     /// Its parts.
     pub sections: Vec<Section<'a>>,
-    /// Last line.
+    /// Last line of a page.
     pub footer: String,
+    /// Name of the file that has it as a page; empty for `report.html`.
+    pub file: String,
 }
 
 /// Tone of a verdict.
@@ -55,8 +64,8 @@ pub enum Tone {
 pub struct Fact {
     /// Its name.
     pub name: String,
-    /// Value and unit.
-    pub value: String,
+    /// Its value.
+    pub value: Cell,
     /// Its remark; may be empty.
     pub remark: String,
 }
@@ -68,6 +77,8 @@ pub struct Section<'a> {
     pub title: String,
     /// Its blocks.
     pub blocks: Vec<Block<'a>>,
+    /// Whether only a page shows it; elsewhere it is named.
+    pub is_appendix: bool,
 }
 
 /// Something in a section.
@@ -77,8 +88,10 @@ pub enum Block<'a> {
     Heading(String),
     /// A paragraph.
     Paragraph(String),
-    /// A paragraph that helps to read what follows.
+    /// A paragraph that helps to read what a page shows.
     Hint(String),
+    /// A statement, and what it rests on.
+    Statement(String, String),
     /// Rows and columns.
     Table(Table),
     /// A chart.
@@ -87,8 +100,8 @@ pub enum Block<'a> {
     Strip(Strip),
     /// Lines as they are.
     Lines(String),
-    /// A picture, an SVG document of our own.
-    Picture(String),
+    /// A picture: what it shows, and an SVG document of our own.
+    Picture(String, String),
     /// Pictures of our own side by side as far as there is room: what each shows, and an SVG document in the page's colours.
     Sketches(Vec<(String, String)>),
     /// Bodies and lines in space, which a reader can turn; on paper, and where a browser does not draw in space, pictures as above.
@@ -104,19 +117,32 @@ pub enum Block<'a> {
 pub struct Table {
     /// Its caption; may be empty.
     pub caption: String,
-    /// Names of the columns, and whether they hold numbers.
-    pub columns: Vec<(String, bool)>,
+    /// Its columns.
+    pub columns: Vec<Column>,
     /// As many cells a row as there are columns.
     pub rows: Vec<Vec<Cell>>,
+    /// Whether a reader may sort its rows by a column.
+    pub is_sortable: bool,
+}
+
+/// A column of a table.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Column {
+    /// Its heading.
+    pub name: String,
+    /// Whether it holds numbers.
+    pub is_numeric: bool,
 }
 
 /// A cell of a table.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Cell {
-    /// Words or a number.
+    /// Words.
     Text(String),
+    /// A number.
+    Number(Number),
     /// Words that are good news, or bad news.
-    Judged(String, bool),
+    Verdict(String, bool),
     /// Hexadecimal digits.
     Hash(String),
     /// An interval with the value in it, drawn between what all of them span: `[least, low, value, high, most]`.
@@ -138,34 +164,142 @@ impl<'a> Section<'a> {
         Self {
             title: title.to_owned(),
             blocks,
+            is_appendix: false,
         }
+    }
+
+    /// The same for a page alone.
+    #[must_use]
+    pub fn appendix(mut self) -> Self {
+        self.is_appendix = true;
+        self
     }
 }
 
 impl Table {
-    /// A table; columns that begin with `#` hold numbers.
+    /// A table.
     #[must_use]
-    pub fn new(caption: &str, columns: &[&str], rows: Vec<Vec<Cell>>) -> Self {
-        let column = |name: &&str| match name.strip_prefix('#') {
-            Some(name) => (name.to_owned(), true),
-            None => ((*name).to_owned(), false),
-        };
+    pub fn new(caption: &str, columns: Vec<Column>, rows: Vec<Vec<Cell>>) -> Self {
         Self {
             caption: caption.to_owned(),
-            columns: columns.iter().map(column).collect(),
+            columns,
             rows,
+            is_sortable: false,
+        }
+    }
+
+    /// The same with rows that a reader may sort.
+    #[must_use]
+    pub fn sortable(mut self) -> Self {
+        self.is_sortable = true;
+        self
+    }
+}
+
+impl Column {
+    /// One of words.
+    pub fn of_words(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            is_numeric: false,
+        }
+    }
+
+    /// One of numbers.
+    pub fn of_numbers(name: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            is_numeric: true,
         }
     }
 }
 
+impl Fact {
+    /// A key number.
+    pub fn new(name: impl Into<String>, value: impl Into<Cell>, remark: impl Into<String>) -> Self {
+        Self {
+            name: name.into(),
+            value: value.into(),
+            remark: remark.into(),
+        }
+    }
+}
+
+impl Cell {
+    /// What it says, without marks; an interval says nothing.
+    #[must_use]
+    pub fn words(&self) -> String {
+        match self {
+            Self::Text(words) | Self::Verdict(words, _) | Self::Hash(words) => words.clone(),
+            Self::Number(number) => number.with_unit(),
+            Self::Interval(_) => String::new(),
+        }
+    }
+}
+
+impl Default for Cell {
+    fn default() -> Self {
+        Self::Text(String::new())
+    }
+}
+
 impl From<&str> for Cell {
-    fn from(text: &str) -> Self {
-        Self::Text(text.to_owned())
+    fn from(words: &str) -> Self {
+        Self::Text(words.to_owned())
     }
 }
 
 impl From<String> for Cell {
-    fn from(text: String) -> Self {
-        Self::Text(text)
+    fn from(words: String) -> Self {
+        Self::Text(words)
     }
+}
+
+impl From<Number> for Cell {
+    fn from(number: Number) -> Self {
+        Self::Number(number)
+    }
+}
+
+/// A name from a file on one line, without anything that steers a terminal.
+fn printable(name: &str) -> String {
+    name.replace(char::is_control, " ")
+}
+
+/// Names of what a block shows and neither text nor Markdown can: charts, drawings, pictures.
+fn drawn(block: &Block<'_>) -> Vec<String> {
+    let named = |all: &[(String, String)]| -> Vec<String> {
+        all.iter().map(|(words, _)| first_sentence(words)).collect()
+    };
+    match block {
+        Block::Panel(panel) => vec![panel.title.clone()],
+        Block::Picture(words, _) => vec![words.clone()],
+        Block::Sketches(all) => named(all),
+        Block::InSpace(drawing, _) => vec![first_sentence(&drawing.name)],
+        Block::Folded(summary, _) => vec![summary.clone()],
+        _ => Vec::new(),
+    }
+}
+
+fn first_sentence(words: &str) -> String {
+    let end = words.find(['.', ',', ';', ':']).unwrap_or(words.len());
+    words[..end].to_owned()
+}
+
+/// A line on what stands on the page alone: sections, and what of others is drawn; none where that is nothing.
+fn on_the_page(document: &Document<'_>) -> Option<String> {
+    let mut names: Vec<String> = Vec::new();
+    for section in &document.sections {
+        match section.is_appendix {
+            true => names.push(section.title.clone()),
+            false => names.extend(section.blocks.iter().flat_map(drawn)),
+        }
+    }
+    names.retain(|name| !name.is_empty());
+    names.dedup();
+    let file = match document.file.is_empty() {
+        true => "report.html",
+        false => &document.file,
+    };
+    (!names.is_empty()).then(|| format!("In {file}: {}.", names.join(", ")))
 }

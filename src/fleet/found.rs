@@ -286,23 +286,6 @@ impl Found {
             count => format!("Something was found in {count} of {of}."),
         }
     }
-
-    /// For a terminal.
-    pub fn text(&self) -> String {
-        let mut text = format!("{}\n", self.verdict());
-        for device in &self.devices {
-            for line in device.lines() {
-                text += &format!("{}: {line}\n", device.name);
-            }
-        }
-        for (device, what) in &self.unlike {
-            text += &format!("{device} is unlike the others: {what}\n");
-        }
-        for (place, why) in &self.unread {
-            text += &format!("not read: {place}: {why}\n");
-        }
-        text
-    }
 }
 
 impl DeviceFound {

@@ -88,28 +88,28 @@ metrics! {
             Force [];
         force_mean_n: Option<f64> = "N", "mean", "surface moving; else last level, steady",
             "Mean of the force.",
-            Force [of("force"), rank(1)];
+            Force [of("force"), fact(1), rank(1)];
         force_rms_error_n: Option<f64> = "N", "RMS error", "about the desired force, else the mean",
             "Root of the mean square of the error.",
             Force [of("force")];
         force_rms_error_percent: Option<f64> = "%", "RMS error", "of the desired force, else the mean",
             "100 * `force_rms_error_n` / the desired force, or the mean.",
-            Force [of("force"), fact(2), rank(3)];
+            Force [of("force"), fact(3), rank(3)];
         force_largest_error_percent: Option<f64> = "%", "largest error", "of the desired force, else the mean",
             "100 * largest abs(error) / the desired force, or the mean.",
             Force [of("force")];
         coefficient_of_variation_percent: Option<f64> = "%", "coefficient of variation", "standard deviation / mean",
             "100 * standard deviation / mean.",
-            Force [fact(1), rank(2)];
+            Force [fact(2), rank(2)];
         force_peak_n: Option<f64> = "N", "largest", "of the whole run",
             "Largest force of the whole run.",
-            Peaks [of("force"), fact(5)];
+            Peaks [of("force"), fact(6)];
         regulator_delay_s: Option<f64> = "s", "regulator's delay", "first command to 63 % of its change",
             "First command until the outlet has made 63.2 % of its change: dead time and time constant.",
-            Step [fact(3), rank(7)];
+            Step [fact(4), rank(7)];
         force_settling_time_s: Option<f64> = "s", "settling time", "last step with nothing else moving",
             "Command until the force stays within 5 % of its change about the steady mean; of the last command that has a response.",
-            Step [of("force"), fact(4), rank(4)];
+            Step [of("force"), fact(5), rank(4)];
         force_overshoot_percent: Option<f64> = "%", "overshoot", "the same command, of the change",
             "100 * the highest force beyond the steady mean after the same command / the change.",
             Step [of("force")];
@@ -133,7 +133,7 @@ metrics! {
             Stroke [];
         stroke_margin_mm: Option<f64> = "mm", "stroke margin", "least distance to either end",
             "Least distance of these two to the ends of the stroke.",
-            Stroke [fact(6), rank(6)];
+            Stroke [fact(7), rank(6)];
         measured_force_error_percent: Option<f64> = "%", "load cell's error", "mean of reading over truth, less 1",
             "100 * mean of (reading - force) / mean force, in contact.",
             Sensors [];

@@ -177,6 +177,12 @@ pub fn columns<S: Measured>() -> impl Iterator<Item = (&'static str, &'static Me
     metrics.filter_map(|metric| Some((metric.column?, metric)))
 }
 
+/// The key numbers, the first ones first.
+#[must_use]
+pub fn key_facts<S: Measured>() -> Vec<&'static Metric<S>> {
+    ranked(S::METRICS, |metric| metric.fact)
+}
+
 /// Those of a rank, the first ones first.
 pub(super) fn ranked<S>(
     metrics: &'static [Metric<S>],

@@ -1,6 +1,8 @@
 //! The bounds that a scenario sets on its results.
 
-use serde::Serialize;
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
 
 use super::MetricsError;
 use super::catalogue::Metric;
@@ -8,15 +10,16 @@ use super::{METRICS, PASS_METRICS, Summary};
 use crate::scenario::Expectation;
 
 /// Whether a result kept its bounds.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BoundCheck {
     /// Name of the metric as in summary.json.
-    pub metric: &'static str,
+    pub metric: Cow<'static, str>,
     /// The pass of which it is, from 1; none of a number of the whole run.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pass: Option<usize>,
     /// Its unit.
-    pub unit: &'static str,
+    #[serde(default)]
+    pub unit: Cow<'static, str>,
     /// Its value in that unit; `None` if the run does not determine it.
     pub value: Option<f64>,
     /// Least allowed value.
@@ -42,11 +45,19 @@ pub fn validate<S>(
 }
 
 impl BoundCheck {
+    /// The bounds, in words: `at least 2 and at most 5`.
+    #[must_use]
+    pub fn ends(&self) -> String {
+        let end = |words: &str, end: Option<f64>| end.map(|end| format!("{words} {end}"));
+        let ends = [end("at least", self.min), end("at most", self.max)];
+        ends.into_iter().flatten().collect::<Vec<_>>().join(" and ")
+    }
+
     /// Its metric, of a pass with its number.
     #[must_use]
     pub fn name(&self) -> String {
         match self.pass {
-            None => self.metric.to_owned(),
+            None => self.metric.to_string(),
             Some(pass) => format!("pass {pass}: {}", self.metric),
         }
     }
@@ -108,9 +119,9 @@ fn undetermined(expectations: &[Expectation]) -> Result<Vec<BoundCheck>, Metrics
     let unknown = |expectation: &Expectation| {
         let metric = find(PASS_METRICS, expectation)?;
         Ok(BoundCheck {
-            metric: metric.name,
+            metric: metric.name.into(),
             pass: None,
-            unit: metric.unit,
+            unit: metric.unit.into(),
             value: None,
             min: expectation.min,
             max: expectation.max,
@@ -139,9 +150,9 @@ pub fn check<S>(
                 min.is_none_or(|min| value >= min) && max.is_none_or(|max| value <= max)
             };
             Ok(BoundCheck {
-                metric: metric.name,
+                metric: metric.name.into(),
                 pass: None,
-                unit: metric.unit,
+                unit: metric.unit.into(),
                 value,
                 min,
                 max,
@@ -257,7 +268,7 @@ mod tests {
         };
         let kept = |metric, min, max| {
             let verdicts = check(METRICS, &summary, &[expectation(metric, min, max)]).unwrap();
-            assert_eq!((verdicts[0].metric, verdicts.len()), (metric, 1));
+            assert_eq!((verdicts[0].metric.as_ref(), verdicts.len()), (metric, 1));
             verdicts[0].kept
         };
         assert!(kept("force_mean_n", Some(100.0), Some(100.0)));

@@ -31,7 +31,7 @@ mod window;
 pub use bench::{
     BENCH_METRICS, BenchLimits, BenchSummary, LEVEL_METRICS, LevelSummary, summarise_bench,
 };
-pub use catalogue::{Measured, Metric, Part, columns};
+pub use catalogue::{Measured, Metric, Part, columns, key_facts};
 pub use edge::EdgeLimits;
 pub use error::MetricsError;
 pub use expect::{BoundCheck, check, check_cell, validate, validate_cell};

@@ -22,25 +22,25 @@ metrics! {
             Force [beside];
         force_mean_n: Option<f64> = "N", "mean", "over the following phase",
             "m = (1/n) * sum of F_i.",
-            Force [of("force"), rank(5), note(note::from_desired)];
+            Force [of("force"), fact(4), rank(5), note(note::from_desired)];
         force_standard_deviation_n: Option<f64> = "N", "standard deviation", "about the mean",
             "d = sqrt((1/n) * sum of (F_i - m)^2). Of the population (divided by n): the samples are all of the run, not a draw from more.",
             Force [of("force")];
         coefficient_of_variation_percent: Option<f64> = "%", "coefficient of variation", "standard deviation / mean",
             "100 d / m; undefined unless m > 0. How uniform the force is, whether or not it is the right one.",
-            Force [fact(1), rank(6)];
+            Force [fact(5), rank(6)];
         force_rms_error_n: Option<f64> = "N", "RMS error", "of force - desired, following",
             "sqrt((1/n) * sum of (F_i - F_d)^2). Offset and spread together: its square is (m - F_d)^2 + d^2.",
             Force [of("force"), note(note::of_desired)];
         force_rms_error_percent: Option<f64> = "%", "RMS error", "of the desired force",
             "100 * `force_rms_error_n` / F_d.",
-            Force [of("force"), beside, fact(3)];
+            Force [of("force"), beside, fact(7)];
         largest_deviation_n: Option<f64> = "N", "largest deviation", "largest |force - desired|",
             "Largest abs(F_i - F_d). From the desired force, so that an offset counts.",
             Force [rank(7)];
         within_5_percent_share_percent: Option<f64> = "%", "within 5 % of desired", "share of the length followed",
             "Share of the length with abs(F - F_d) <= 0.05 F_d.",
-            Force [fact(2)];
+            Force [fact(6)];
         within_10_percent_share_percent: Option<f64> = "%", "within 10 % of desired", "share of the length followed",
             "Share of the length with abs(F - F_d) <= 0.10 F_d.",
             Force [];
@@ -82,7 +82,7 @@ metrics! {
             Stroke [beside];
         stroke_margin_mm: Option<f64> = "mm", "stroke margin", "least distance to either end",
             "min(smallest stroke - lower end, upper end - largest stroke). How much more misplacement the device could take; negative inside an end stop.",
-            Stroke [fact(4), rank(9)];
+            Stroke [fact(9), rank(9)];
         path_error_rms_um: Option<f64> = "µm", "lateral error, RMS", "tool tip beside planned path",
             "sqrt((1/n) * sum of e_i^2) with e = `path_error`, the lateral error: the distance of the tool tip beside the planned path, across path and contact normal, positive to the left of travel. The tip is where joints and slide have taken the ball's centre, its planned place that of the plan at the same time; a leaned slide that gives way moves it aside as well. Along the normal the device gives way by design; that is the stroke, not an error.",
             Path [rank(11)];
@@ -122,7 +122,7 @@ metrics! {
             Edge [];
         chamfer_leg_mean_mm: Option<f64> = "mm", "chamfer leg, mean", "along the edge",
             "Mean of the chamfer's leg over the stations.",
-            Edge [rank(1), note(note::legs)];
+            Edge [fact(1), rank(1), note(note::legs)];
         chamfer_leg_standard_deviation_mm: Option<f64> = "mm", "chamfer leg, spread", "standard deviation of it",
             "Population standard deviation of the leg over the stations.",
             Edge [];
@@ -134,13 +134,13 @@ metrics! {
             Edge [beside];
         residual_burr_max_mm: Option<f64> = "mm", "burr left, highest", "along the edge",
             "Height of the highest burr that is left.",
-            Edge [rank(2), note(note::too_much_burr)];
+            Edge [fact(3), rank(2), note(note::too_much_burr)];
         residual_burr_share_percent: Option<f64> = "%", "burr left", "share of the edge",
             "Share of the stations on which more than `residual_burr_max_mm` of the scenario is left.",
             Edge [beside];
         out_of_tolerance_share_percent: Option<f64> = "%", "out of tolerance", "share of the edge",
             "Share of the stations on which more than `residual_burr_max_mm` of the scenario is left, or the leg lies outside `leg_min_mm` to `leg_max_mm`.",
-            Edge [rank(3), note(note::with_its_ends)];
+            Edge [fact(2), rank(3), note(note::with_its_ends)];
         ends_chamfer_leg_min_mm: Option<f64> = "mm", "ends, leg, least", "at the ends of the edge",
             "Least leg over the stations of both ends, which the numbers above leave out.",
             Edge [beside];
@@ -187,7 +187,7 @@ metrics! {
     always {
         duration_s: f64 = "s", "cycle time", "approach to retract",
             "Cycle time: simulated time from the first to the last sample, which of a job that is done are those of approach and retract.",
-            Time [rank(4), note(note::following)];
+            Time [fact(8), rank(4), note(note::following)];
         /// Each joint's largest torque, base first.
         joints: Vec<JointTorqueShare>;
         /// Each pass along the edge, in order.

@@ -58,6 +58,15 @@ pub fn optional(value: Option<f64>, unit: &str) -> String {
     value.map_or_else(|| UNKNOWN.to_owned(), |value| number(value, unit))
 }
 
+/// As [`optional`]; a share that falls short of the whole does not read as the whole.
+#[must_use]
+pub fn metric(value: Option<f64>, unit: &str) -> String {
+    match value {
+        Some(value) if unit == "%" && (99.995..100.0).contains(&value) => "<100".to_owned(),
+        value => optional(value, unit),
+    }
+}
+
 /// Numbers of a column in one unit, with as many decimals for all as the largest of them has.
 #[must_use]
 pub fn column(values: &[Option<f64>], unit: &str) -> Vec<String> {
@@ -107,6 +116,37 @@ pub fn counted(count: usize, word: &str) -> String {
     match count {
         1 => format!("1 {word}"),
         _ => format!("{count} {word}s"),
+    }
+}
+
+/// `a`, `a and b`, `a, b and c`.
+#[must_use]
+pub fn listed(words: &[String]) -> String {
+    match words {
+        [] => String::new(),
+        [only] => only.clone(),
+        [all @ .., last] => format!("{} and {last}", all.join(", ")),
+    }
+}
+
+/// A text that begins with a capital.
+#[must_use]
+pub fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    let first = letters
+        .next()
+        .map(|letter| letter.to_uppercase().collect::<String>());
+    first.map_or_else(String::new, |first| first + letters.as_str())
+}
+
+/// A share in percent.
+#[must_use]
+pub fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    if percent >= 99.95 {
+        "more than 99.9 %".to_owned()
+    } else {
+        format!("{percent:.1} %")
     }
 }
 

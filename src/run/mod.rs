@@ -15,9 +15,11 @@ mod cell;
 mod effects;
 mod error;
 mod job;
+mod result;
 
 pub use bench::{FinishedBench, run_bench};
 pub use cell::{FinishedCell, run_cell};
 pub use effects::{apply_effects, nominal_of};
 pub use error::RunError;
 pub use job::{Job, Outcome};
+pub use result::{ChamferLimits, RunKind, RunOrigin, RunResult, RunSummary, outside};

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::keys::declaration::Key;
 use crate::keys::document::Document;
@@ -12,7 +12,7 @@ use crate::keys::suggestion::join;
 const OF_DEVICE: &str = "contact force and stroke";
 
 /// A value in use that nobody has measured in public.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AssumedValue {
     /// Its dotted key.
     pub key: String,

@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::sweep::Sweep;
 use super::{QUANTILES, Varied, rank_correlation, shares_of_variance};
 use crate::metrics::{Label, labels, metric_names, most_important};
-use crate::quantity::display_name::{display_name, number};
-use crate::quantity::{column, counted};
+use crate::quantity::display_name::display_name;
+use crate::quantity::{capital, column, counted};
 use crate::recording::RecordingError;
 use crate::recording::long_column::LongColumn;
 use crate::recording::provenance::SourceFile;
@@ -100,21 +100,6 @@ impl Driver {
     /// Whether its share differs from chance.
     pub fn is_sure(&self) -> bool {
         self.interval[0] > self.shuffled
-    }
-}
-
-impl VariedKey {
-    /// Its values, for a terminal.
-    fn words(&self) -> String {
-        let unit = match display_name(short(&self.key)).1 {
-            unit if unit.is_empty() => unit,
-            unit => format!(" {unit}"),
-        };
-        let ends = match self.ends {
-            Some([low, high]) => format!("{} to {}{unit}", number(low), number(high)),
-            None => counted(self.values, "value"),
-        };
-        format!("{}, {ends}, {}", self.key, self.which)
     }
 }
 
@@ -242,14 +227,10 @@ impl Swept {
         text + "."
     }
 
-    /// For a terminal: the numbers that differ, and what drives them.
-    pub fn text(&self) -> String {
-        let mut text = format!("{}: {}\n", self.title, self.verdict());
-        let labels = self.labels();
-        for variable in &self.variables {
-            text += &format!("varied: {}\n", variable.words());
-        }
-        for (label, metric) in self.most_important() {
+    /// What drives the numbers that differ and matter most, a sentence each.
+    #[must_use]
+    pub fn findings(&self) -> Vec<String> {
+        let finding = |(label, metric): (Label, &MetricOfRuns)| {
             let ends = [0.05, 0.5, 0.95].map(|share| metric.quantile(share));
             let cells = column(&ends, label.unit);
             let drivers: Vec<String> = metric
@@ -270,15 +251,19 @@ impl Swept {
                 "" => String::new(),
                 unit => format!(" {unit}"),
             };
-            text += &format!(
-                "{}: {} to {}{unit} in 90 % of the runs, median {}; driven by {drivers}\n",
-                label.name, cells[0], cells[2], cells[1]
-            );
+            format!(
+                "{}: {} to {}{unit} in 90 % of the runs, median {}; driven by {drivers}.",
+                capital(&label.name),
+                cells[0],
+                cells[2],
+                cells[1]
+            )
+        };
+        let findings: Vec<String> = self.most_important().map(finding).collect();
+        match findings.is_empty() {
+            true => vec!["No number differs between the runs.".to_owned()],
+            false => findings,
         }
-        if labels.is_empty() || self.most_important().next().is_none() {
-            text += "no number differs between the runs\n";
-        }
-        text
     }
 
     /// Metrics that differ and matter most.

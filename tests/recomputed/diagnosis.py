@@ -359,40 +359,45 @@ class Examination:
     # report.html, diagnosis.rrd
 
     def page(self):
-        of = self.of
-        page = Page((of.folder / "report.html").read_text())
+        page = Page((self.of.folder / "report.html").read_text())
         for table in page.tables:
-            head = [h.strip() for h in table["rows"][0]] if table["rows"] else []
-            if "nominal, σ" in head:
-                for row in table["rows"][1:]:
-                    cells = dict(zip(head, row))
-                    column = next(c for c, (w, *_) in CHANNELS.items() if w == cells["channel"])
-                    rows = of.fitted[of.fitted.recording == cells["recording"]]
-                    factor = CHANNELS[column][2]
-                    for model, shown, sigma in (("believed", "nominal", "nominal, σ"), ("improved", "improved", "improved, σ"), ("tolerated", None, "within tolerances, σ")):
-                        size, sigmas = of.size(rows, model, column)
-                        if shown:
-                            self.number(f"page: {row}", cells[shown].split()[0], factor * size)
-                        self.number(f"page: {row}", cells[sigma], sigmas)
-                    if cells["not fitted to, σ"] != "–":
-                        self.number(f"page: {row}", cells["not fitted to, σ"], of.size(rows, "left_out", column)[1])
-            if "within tolerances" in head:
-                for row in table["rows"][1:]:
-                    cells = dict(zip(head, row))
-                    column = next((c for c, (w, *_) in CHANNELS.items() if w == cells["channel"]), None)
-                    if column is None:
-                        continue  # A joint's: not in comparison.parquet.
-                    in_turn = cells["recording"] == IN_TURN
-                    rows, after = (of.fitted, "left_out") if in_turn else (of.kept, "improved")
-                    for shown, model in (("nominal", "believed"), ("within tolerances", "tolerated"), ("improved", after)):
-                        size, sigmas = of.size(rows, model, column)
-                        self.number(f"page: {row}", cells[shown].split()[0], CHANNELS[column][2] * size)
-                    self.number(f"page: {row}", cells["improved, σ"], sigmas)
-            if "odds" in head:
-                for row, considered in zip(table["rows"][1:], of.json["considered"]):
-                    close = considered["log10_odds"] >= LEAST_ODDS
-                    judged = "not ruled out" if close else "ruled out" if considered["in_full"] else "fell behind"
-                    self.check.fact(f"page: {row}", row[1], judged)
+            self.document_table("page", table["rows"])
+
+    def document_table(self, where, rows_):
+        """A table of the document, on the page or in the viewer."""
+        of = self.of
+        head = [h.strip() for h in rows_[0]] if rows_ else []
+        if "nominal, σ" in head:
+            for row in rows_[1:]:
+                cells = dict(zip(head, row))
+                column = next(c for c, (w, *_) in CHANNELS.items() if w == cells["channel"])
+                rows = of.fitted[of.fitted.recording == cells["recording"]]
+                factor = CHANNELS[column][2]
+                for model, shown, sigma in (("believed", "nominal", "nominal, σ"), ("improved", "improved", "improved, σ"), ("tolerated", None, "within tolerances, σ")):
+                    size, sigmas = of.size(rows, model, column)
+                    if shown:
+                        self.number(f"{where}: {row}", cells[shown].split()[0], factor * size)
+                    self.number(f"{where}: {row}", cells[sigma], sigmas)
+                if cells["not fitted to, σ"] != "–":
+                    self.number(f"{where}: {row}", cells["not fitted to, σ"], of.size(rows, "left_out", column)[1])
+        if "within tolerances" in head:
+            for row in rows_[1:]:
+                cells = dict(zip(head, row))
+                column = next((c for c, (w, *_) in CHANNELS.items() if w == cells["channel"]), None)
+                if column is None:
+                    continue  # A joint's: not in comparison.parquet.
+                in_turn = cells["recording"] == IN_TURN
+                rows, after = (of.fitted, "left_out") if in_turn else (of.kept, "improved")
+                for shown, model in (("nominal", "believed"), ("within tolerances", "tolerated"), ("improved", after)):
+                    size, sigmas = of.size(rows, model, column)
+                    self.number(f"{where}: {row}", cells[shown].split()[0], CHANNELS[column][2] * size)
+                self.number(f"{where}: {row}", cells["improved, σ"], sigmas)
+        if "odds" in head:
+            for row, considered in zip(rows_[1:], of.json["considered"]):
+                close = considered["log10_odds"] >= LEAST_ODDS
+                judged = "not ruled out" if close else "ruled out" if considered["in_full"] else "fell behind"
+                self.check.fact(f"{where}: {row}", row[1], judged)
+
 
     def viewer(self):
         of = self.of
@@ -402,18 +407,9 @@ class Examination:
         for section in of.json["account"]["sections"]:
             for paragraph in section["paragraphs"]:
                 self.check.fact(f"viewer: {section['title']}", " ".join(paragraph.replace("\\", "").split()) in flat.replace("\\", ""), True)
+        self.check.fact("viewer: tables", len(tables) > 0, True)
         for rows in tables:
-            if rows[0][0].startswith("prediction error (RMS)"):
-                for recording, what, before, after, noise in rows[1:]:
-                    column = next((c for c, (w, u, _) in CHANNELS.items() if f"{w} [{u}]" == what), None)
-                    if column is None:
-                        continue
-                    in_turn = recording == IN_TURN
-                    frame, model = (of.fitted, "left_out") if in_turn else (of.kept, "improved")
-                    factor = CHANNELS[column][2]
-                    self.number(f"viewer: {what}", before, factor * of.size(frame, "tolerated", column)[0])
-                    self.number(f"viewer: {what}", after, factor * of.size(frame, model, column)[0])
-                    self.number(f"viewer: {what}", noise, factor * of.noise[column])
+            self.document_table("viewer", rows)
 
     # Statements
 

@@ -177,37 +177,75 @@ class Job:
             self.checked.fact(f"bound {e['metric']}: kept", e["kept"], bool(kept))
             self.checked.fact(f"bound {e['metric']}: ends", (e["min"], e["max"]), (bound.get("min"), bound.get("max")))
 
-    # The table in the terminal
+    # The text in the terminal: the same document as the viewer's, so the same numbers
 
     def table(self):
-        lines = [line for line in self.printed.splitlines()[1:] if not re.fullmatch(r"-+", line) and not line.startswith("written to ")]
+        def numbers(text):
+            return sorted(re.findall(common.NUMBER, re.sub(r"\\(.)", r"\1", text)))
+
+        printed = self.printed[: self.printed.rindex("written to ")]
+        viewer = common.viewer_text(self.folder / "recording.rrd").partition("## The edge before and after")[0]
+        missing = [n for n in numbers(printed) if n not in numbers(viewer)] + [n for n in numbers(viewer) if n not in numbers(printed)]
+        self.checked.fact("terminal: numbers that the viewer's text has not, or the other way round", missing, [])
+        self.checked.fact("terminal: longest line", max(map(len, printed.splitlines())) <= 80, True)
+
+    # Tables of the document, on a page and in the viewer
+
+    def document_table(self, where, head, rows):
+        """A table that page and viewer share; whether it is one."""
         by_label = {}
         for key, (label, unit) in self.labels.items():
             by_label.setdefault((label, unit), key)
-        seen = {"levels": 0}
-        for line in lines:
-            where = f"table: `{line.strip()}`"
-            if self.ending(where, line):
-                continue
-            if self.is_bench:
-                self.bench_line(where, line, by_label, seen)
-            else:
-                self.cell_line(where, line, by_label)
+        if head == ["verdict", "number", "value", "bounds"]:
+            for word, label, printed, ends in rows:
+                passed = re.fullmatch(r"(?:pass \d+: )?(.*)", label)[1]
+                value, _, unit = printed.partition(" ")
+                key = next(k for k, (own, u) in self.labels.items() if full_label(k, own) == passed and u == unit)
+                self.bound(f"{where}: {label}", word, key, value, ends)
+        elif head == ["part", "number", "value", "remark"]:
+            for _, label, printed, note in rows:
+                value, _, unit = printed.partition(" ")
+                key = by_label.get((label, unit))
+                if key is None:
+                    self.checked.uncovered(where, f"{label} {printed}")
+                    continue
+                self.value(f"{where}: {key}", key, value)
+                self.note(f"{where}: {key}", key, note)
+        elif head[0] == "from, mm":
+            for number, row in enumerate(rows):
+                for printed, key in zip(row, ["from_mm", "to_mm", "force_mean_n", "force_standard_deviation_n"], strict=True):
+                    self.checked.number(f"{where}: tenth {number + 1}, {key}", printed, self.numbers["force_by_tenth"][number][key])
+        elif head[0] == "pass":
+            self.checked.fact(f"{where}: heads", head[1:], [f"{name} [{unit}]" for name, unit, _ in self.PASSES])
+            for row in rows:
+                self.pass_row(f"{where}: pass {row[0]}", int(row[0]), row[1:])
+        elif head[0] == "command":
+            self.checked.fact(f"{where}: heads", head[1:], [f"{name} [{unit}]" for name, unit, _ in LEVELS])
+            for number, row in enumerate(rows):
+                for printed, (name, _, key) in zip(row[1:], LEVELS, strict=True):
+                    self.checked.number(f"{where}: level {number + 1}, {name}", printed, self.numbers["levels"][number][key])
+        else:
+            return False
+        return True
 
-    def ending(self, where, line):
-        """Bounds, how many are kept, and what is said of the force."""
-        found = re.fullmatch(r"(ok|OUTSIDE)\s+(\w+)\s+(\S+)\s+(.*)", line)
-        if found:
-            self.bound(where, *found.groups())
+    def sentence(self, where, text):
+        """A sentence of the document: verdict, remark, caption; whether it is one."""
+        if text == self.document["title"] or text.startswith(("In report.html: ", "Contact force by tenths", "Each pass along the edge", "Steady values of each command", "Not determined by this run: ")):
             return True
-        found = re.fullmatch(r"(\d+) of (\d+) bounds? kept", line)
-        if found:
+        if found := re.fullmatch(r"(\d+) of (\d+) bounds? kept\.", text):
             self.tally(where, found)
-            return True
-        if "the desired force:" in line:
-            self.far(where, line)
-            return True
-        return line.startswith("– not determined by this run")
+        elif text.startswith("Note: "):
+            self.checked.fact(where, text.removeprefix("Note: ").removesuffix("."), next((n for n in self.document["notes"] if n in text), None))
+        elif text.startswith("Drives at their limit: "):
+            for joint, start, time in re.findall(rf"([^ ,]+) from ({common.PRINTED}) s on for ({common.PRINTED}) s", text):
+                own = next(j for j in self.numbers["joints"] if j["joint"] == joint)
+                self.checked.number(f"{where}: start", start, own["saturated_from_s"])
+                self.checked.number(f"{where}: time", time, own["saturated_s"])
+        elif "the desired force:" in text and not text.endswith("kept."):
+            self.far(where, text.rstrip("."))
+        else:
+            return False
+        return True
 
     def bound(self, where, word, metric, printed, ends):
         bound = self.run.scenario["expect"][metric]
@@ -234,39 +272,9 @@ class Job:
         if key not in TIMING:
             self.checked.number(where, printed, self.numbers.get(key))
 
-    def cell_line(self, where, line, by_label):
-        tenths = {"To mm": "to_mm", "Mean N": "force_mean_n", "SD N": "force_standard_deviation_n"}
-        head = line[:7].strip()
-        if head in tenths:
-            for number, (printed, tenth) in enumerate(zip(line[7:].split(), self.numbers["force_by_tenth"], strict=True)):
-                self.checked.number(f"{where}, tenth {number + 1}", printed, tenth[tenths[head]])
-            return
-        if self.pass_line(where, line):
-            return
-        label, printed, unit, note = line[8:32].strip(), line[33:42].strip(), line[43:47].strip(), line[49:].strip()
-        key = by_label.get((label, unit))
-        if key is None:
-            self.checked.uncovered(where, line)
-            return
-        self.value(where, key, printed)
-        self.note(where, key, note)
-
     # Columns of the table of passes.
     PASSES = [("desired", "N", "desired_force_n"), ("mean", "N", "force_mean_n"), ("SD", "N", "force_standard_deviation_n"), ("RMS error", "%", "force_rms_error_percent"),
               ("in 5 %", "%", "within_5_percent_share_percent"), ("largest", "N", "force_peak_follow_n"), ("feed", "mm/s", "feed_mean_mm_per_s")]
-
-    def pass_line(self, where, line):
-        """A line of the table of passes: heads, units, or a row."""
-        head, words = line[:7].strip(), line[7:].split()
-        if head == "Pass":
-            self.checked.fact(where, words, " ".join(name for name, _, _ in self.PASSES).split())
-        elif head == "" and words and words == [unit for _, unit, _ in self.PASSES]:
-            pass
-        elif head.isdigit() and len(words) == len(self.PASSES):
-            self.pass_row(f"{where}, pass {head}", int(head), words)
-        else:
-            return False
-        return True
 
     def pass_row(self, where, number, printed):
         row = next(row for row in self.numbers["passes"] if row["pass"] == number)
@@ -281,40 +289,21 @@ class Job:
             return
         self.checked.sentence(f"{where}: note", note, NOTES.get(key, []), self.numbers)
 
-    def bench_line(self, where, line, by_label, seen):
-        if not line.strip() or line.split()[0] in ("at", "[s]"):
-            # Heads of the columns stand apart: `set bar` and `outlet bar` once ran together.
-            self.checked.fact(where, len(line.split()), len(LEVELS))
-            return
-        if seen["levels"] < len(self.numbers["levels"]):
-            level = self.numbers["levels"][seen["levels"]]
-            seen["levels"] += 1
-            for printed, (name, _, key) in zip(line.split(), LEVELS, strict=True):
-                self.checked.number(f"{where}: {name}", printed, level[key])
-            return
-        label, printed, unit, note = line[:28].strip(), line[29:39].strip(), line[40:46].strip(), line[48:].strip()
-        key = by_label.get((label, unit))
-        if key is None:
-            self.checked.uncovered(where, line)
-            return
-        self.value(where, key, printed)
-        self.note(where, key, note)
-
     # The viewer's text
 
     def viewer(self):
         tables, others = common.markdown_tables(common.viewer_text(self.folder / "recording.rrd"))
+        verdict, sections = None, ("Along the edge", "Passes", "Commands", "Bounds", "Numbers", "Finished edge", "Signals", "Cell and edge", "The bench", "The arm", "The edge before and after")
         for line in others:
-            where = f"viewer: `{line}`"
-            line = line.strip("#* ")
-            found = re.fullmatch(r"(\d+) of (\d+) bounds? kept", line)
-            if found:
-                self.tally(where, found)
-            elif "the desired force:" in line:
-                self.far(where, line)
+            where, marks, line = f"viewer: `{line}`", line.startswith("## "), line.strip("#* ")
+            if self.sentence(where, line) or line in sections:
+                continue
+            if marks and verdict is None:
+                verdict = line
+                self.verdict(where, line)
             elif found := re.fullmatch(r"Drawn (\d+) times as large as it is\.", line):
                 self.checked.fact(where, int(found[1]), self.enlarged())
-            elif line not in (self.document["title"], "Force along the path", "Passes", "The edge before and after"):
+            else:
                 self.checked.uncovered("viewer", line)
         for head, *rows in tables:
             self.viewer_table(head, rows)
@@ -338,29 +327,17 @@ class Job:
             self.checked.fact(where, float(re.search(r"more than ([\d.]+) mm", row[1])[1]), float(chamfer.get("residual_burr_max_mm", 0.02)))
 
     def viewer_table(self, head, rows):
-        by_label = {(label, unit): key for key, (label, unit) in self.labels.items()}
-        for number, row in enumerate(rows):
+        rows = [[cell.strip("*") for cell in row] for row in rows]
+        if self.document_table("viewer", head, rows):
+            return
+        for row in rows:
             where = f"viewer: {' | '.join(row)}"
-            if head[:2] == ["", "expected"]:
-                self.bound(where, row[0].strip("*"), row[1], row[2], row[3])
-            elif head[0] == "from mm":
-                tenth = self.numbers["force_by_tenth"][number]
-                for printed, key in zip(row, ["from_mm", "to_mm", "force_mean_n", "force_standard_deviation_n"], strict=True):
-                    self.checked.number(where, printed, tenth[key])
-            elif head[0] == "pass":
-                self.pass_row(where, int(row[0]), row[1:])
-            elif head[0] == "entity":
+            if head[0] == "entity":
                 self.legend(where, row)
-            elif head[0] == "at, s":
-                for printed, (name, _, key) in zip(row, LEVELS, strict=True):
-                    self.checked.number(f"{where}: {name}", printed, self.numbers["levels"][number][key])
+            elif head == ["", "", ""]:
+                self.key_fact(where, *row)
             else:
-                key = by_label.get((row[0], row[2]))
-                if key is None:
-                    self.checked.uncovered("viewer", " | ".join(row))
-                    continue
-                self.value(where, key, row[1])
-                self.note(where, key, row[3])
+                self.checked.uncovered("viewer", " | ".join(row))
 
     # report.html
 
@@ -384,10 +361,8 @@ class Job:
             return
         if kind.startswith("verdict"):
             self.verdict(where, text)
-        elif kind == "lead" and "the desired force:" in text:
-            self.far(where, text.rstrip("."))
-        elif kind == "lead":
-            self.checked.fact(where, text.removeprefix("Note: ").removesuffix("."), next((n for n in self.document["notes"] if n in text), None))
+        elif kind == "lead" and self.sentence(where, text):
+            pass
         elif tag == "text":
             self.picture(where, text)
         elif text.startswith("Scenario "):
@@ -436,45 +411,21 @@ class Job:
             self.checked.fact(f"{where}: a force that is off is said so", off is not None and off > 5.0 and "chamfer_leg_mean_mm" not in self.numbers, False)
 
     def facts(self, page):
-        names = {full_label(key, label): (key, unit) for key, (label, unit) in self.labels.items()}
-        n, texts = self.numbers, page.texts
+        texts = page.texts
         for index, (tag, _, name) in enumerate(texts):
-            if tag != "dt":
-                continue
-            value = texts[index + 1][2]
-            remark = texts[index + 2][2] if index + 2 < len(texts) and texts[index + 2][0] == "small" else ""
-            where = f"page: {name}"
-            if name == "set pressure, last":
-                last = {"set": n["levels"][-1]["set_pressure_bar_gauge"], "outlet": n["levels"][-1]["regulator_pressure_bar_gauge"]}
-                self.checked.sentence(where, value, ["{set} bar"], last)
-                self.checked.sentence(where, remark, ["gauge; outlet {outlet} bar"], last)
-            elif name == "force reached, mean":
-                self.checked.sentence(where, value, ["{force_mean_n} N"], n)
-                self.checked.sentence(where, remark, ["{off_percent} % from desired"], n)
-            elif name == "largest force":
-                phases = {phase: n[f"force_peak_{phase}_n"] for phase in self.run.PEAKS if n[f"force_peak_{phase}_n"] is not None}
-                most = max(phases, key=phases.get)
-                self.checked.sentence(where, value, ["{most} N"], {"most": phases[most]})
-                self.checked.fact(where, remark, f"of all phases, in {most}")
-            elif name == "chamfer leg, mean":
-                self.checked.sentence(where, value, ["{chamfer_leg_mean_mm} mm"], n)
-                chamfer = self.run.scenario["workpiece"].get("chamfer", {})
-                stated = n | {"low": chamfer.get("leg_min_mm", 0.0), "high": chamfer.get("leg_max_mm")}
-                along = "{chamfer_leg_min_mm} to {chamfer_leg_max_mm} mm along the edge"
-                self.checked.sentence(where, remark, [along + "; tolerance {low} to {high} mm", along], stated)
-                self.checked.fact(f"{where}: tolerance", "tolerance" in remark, bool(chamfer))
-            elif name == "burr left, highest":
-                self.checked.sentence(where, value, ["{residual_burr_max_mm} mm"], n)
-                self.checked.sentence(where, remark, ["of up to {burr_before_max_mm} mm before"], n)
-            elif name in names:
-                # Two numbers may share a name; the unit tells them apart.
-                unit = value.partition(" ")[2]
-                key = next(k for k, (label, own) in self.labels.items() if full_label(k, label) == name and own == unit)
-                self.checked.sentence(where, value, [f"{{{key}}} {unit}".strip()], n)
-                if remark not in FIXED:
-                    self.checked.sentence(where, remark, [], n)
-            else:
-                self.checked.uncovered("page", f"{name}: {value}")
+            if tag == "dt":
+                remark = texts[index + 2][2] if index + 2 < len(texts) and texts[index + 2][0] == "small" else ""
+                self.key_fact(f"page: {name}", name, texts[index + 1][2], remark)
+
+    def key_fact(self, where, name, value, remark):
+        printed, _, unit = value.strip().partition(" ")
+        # Two numbers may share a name; the unit tells them apart.
+        key = next((k for k, (label, own) in self.labels.items() if full_label(k, label) == name and own == unit), None)
+        if key is None:
+            self.checked.uncovered(where, f"{name}: {value}")
+            return
+        self.value(where, key, printed)
+        self.note(where, key, remark)
 
     def page_table(self, table):
         head, *rows = table["rows"]
@@ -488,17 +439,10 @@ class Job:
                 self.checked.fact(f"{where}: bounds", [float(end) for end in re.findall(r"(?:least|most) (-?[\d.]+)", bound)], ends)
                 if meaning not in FIXED:
                     self.checked.sentence(where, meaning, [], self.numbers)
-        elif head[0] == "at, s":
-            for number, row in enumerate(rows):
-                for printed, (name, _, key) in zip(row, LEVELS, strict=True):
-                    self.checked.number(f"page: level {number + 1}, {name}", printed, self.numbers["levels"][number][key])
-        elif head[0] == "from, mm":
-            for number, row in enumerate(rows):
-                for printed, key in zip(row, ["from_mm", "to_mm", "force_mean_n", "force_standard_deviation_n"], strict=True):
-                    self.checked.number(f"page: tenth {number + 1}, {key}", printed, self.numbers["force_by_tenth"][number][key])
-        elif head[0] == "pass":
-            for row in rows:
-                self.pass_row(f"page: pass {row[0]}", int(row[0]), row[1:])
+        elif self.document_table("page", head, rows):
+            caption = table["caption"]
+            if caption and not self.sentence("page", caption):
+                self.checked.uncovered("page", caption)
         elif head[0] == "file":
             for name, size, digest in rows:
                 data = (common.PROJECT / name).read_bytes()

@@ -6,17 +6,16 @@ mod force_range;
 
 use std::path::Path;
 
-use serde::Serialize;
-
 pub use evaluate::ScenarioEvaluator;
 
 use super::error::AppError;
 use super::files::{
     DESIGN, FRONT, OVERRIDE, OutputFolder, OverwritePolicy, REPORT, ROBUSTNESS, provenance,
 };
-use super::report::of_design;
-use crate::design::{self, Domain, Study, StudyResult, Variable};
+use crate::design::{self, Domain, Study, StudyDocument, Variable, VariedKey};
+use crate::document::{Style, html, text};
 use crate::recording::provenance::Provenance;
+use crate::report::{self, StudyPictures};
 use crate::scenario::{self, AnyScenario, AssumedValue, files_of_cell};
 
 /// All that a study may write.
@@ -49,7 +48,7 @@ impl PreparedStudy {
         file: &Path,
         evaluations: Option<u32>,
         folder: &Path,
-        policy: OverwritePolicy,
+        standing: OverwritePolicy,
     ) -> Result<Self, AppError> {
         let mut study = design::load(file)?;
         if let Some(evaluations) = evaluations {
@@ -61,7 +60,7 @@ impl PreparedStudy {
         Ok(Self {
             provenance: sources(&study, &scenarios)?,
             assumed: assumed(&study, &scenarios),
-            folder: OutputFolder::prepare(folder, &NAMES, policy)?,
+            folder: OutputFolder::prepare(folder, &NAMES, standing)?,
             study,
             evaluator,
         })
@@ -78,19 +77,35 @@ impl PreparedStudy {
         progress: &(dyn Fn(usize, usize) + Sync),
     ) -> Result<FinishedStudy, AppError> {
         let result = design::run(&self.study, &self.evaluator, progress)?;
-        let document = document(self, &result)?;
         let override_text = result.override_text();
         let pictures = [
             (FRONT, design::front_svg(&result)?),
             (ROBUSTNESS, design::robustness_svg(&result)?),
         ];
+        let study = StudyDocument {
+            study: self.study.path.display().to_string(),
+            scenarios: (self.study.scenarios.iter())
+                .map(|path| path.display().to_string())
+                .collect(),
+            variables: self.study.variables.iter().map(varied).collect(),
+            result,
+            assumed: self.assumed.clone(),
+            provenance: self.provenance.clone(),
+        };
+        let document = serde_json::to_string_pretty(&study)?;
+        let report = report::study(
+            &study,
+            StudyPictures {
+                front: pictures[0].1.as_deref(),
+                robustness: pictures[1].1.as_deref(),
+            },
+        );
+        let page = html(&report);
         let mut files = vec![
             (DESIGN, document.as_str()),
             (OVERRIDE, override_text.as_str()),
         ];
-        let shown = pictures.each_ref().map(|(_, svg)| svg.as_deref());
-        let report = of_design(&serde_json::from_str(&document)?, shown);
-        files.push((REPORT, report.as_str()));
+        files.push((REPORT, page.as_str()));
         for (name, svg) in &pictures {
             files.extend(svg.as_deref().map(|svg| (*name, svg)));
         }
@@ -100,7 +115,7 @@ impl PreparedStudy {
             self.folder.discard(name)?;
         }
         Ok(FinishedStudy {
-            table: design::text(&self.study, &result),
+            table: text(&report, Style::Plain),
             names,
             document,
         })
@@ -157,53 +172,17 @@ fn sources(study: &Study, scenarios: &[AnyScenario]) -> Result<Provenance, AppEr
     provenance(&files, study.seed)
 }
 
-/// design.json.
-fn document(prepared: &PreparedStudy, result: &StudyResult) -> Result<String, AppError> {
-    #[derive(Serialize)]
-    struct Varied<'a> {
-        key: &'a str,
-        min: f64,
-        max: f64,
-        /// The values that there are, of a catalogue.
-        choices: Option<Vec<f64>>,
+/// What was varied.
+fn varied(variable: &Variable) -> VariedKey {
+    let [min, max] = variable.domain.ends();
+    let choices = match &variable.domain {
+        Domain::Catalogue(entries) => Some(entries.iter().map(|entry| entry.value).collect()),
+        _ => None,
+    };
+    VariedKey {
+        key: variable.key.clone(),
+        min,
+        max,
+        choices,
     }
-    fn varied(variable: &Variable) -> Varied<'_> {
-        let [min, max] = variable.domain.ends();
-        let choices = match &variable.domain {
-            Domain::Catalogue(entries) => Some(entries.iter().map(|entry| entry.value).collect()),
-            _ => None,
-        };
-        Varied {
-            key: &variable.key,
-            min,
-            max,
-            choices,
-        }
-    }
-    #[derive(Serialize)]
-    struct Document<'a> {
-        study: String,
-        scenarios: Vec<String>,
-        /// Variables, and their bounds.
-        variables: Vec<Varied<'a>>,
-        #[serde(flatten)]
-        result: &'a StudyResult,
-        #[serde(skip_serializing_if = "<[_]>::is_empty")]
-        #[serde(rename = "judged")]
-        assumed: &'a [AssumedValue],
-        provenance: &'a Provenance,
-    }
-    let study = &prepared.study;
-    Ok(serde_json::to_string_pretty(&Document {
-        study: study.path.display().to_string(),
-        scenarios: study
-            .scenarios
-            .iter()
-            .map(|path| path.display().to_string())
-            .collect(),
-        variables: study.variables.iter().map(varied).collect(),
-        result,
-        assumed: &prepared.assumed,
-        provenance: &prepared.provenance,
-    })?)
 }

@@ -1,8 +1,5 @@
 //! diagnosis.rrd: what a diagnosis found, as a screen for Rerun's viewer.
 
-mod text;
-
-use super::super::report::{lacking as lacking_of, robust_range, variable};
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::answer::words::{
     CHANNEL_UNITS, CHANNEL_WORDS, capital, display_name, reference_noise,
@@ -11,8 +8,9 @@ use crate::diagnosis::difference::comparison::{Balance, Compared, ComparedChanne
 use crate::diagnosis::difference::mismatch::Mismatch;
 use crate::diagnosis::formula::unlisted::report::{ShapeRow, UnlistedReport};
 use crate::diagnosis::recordings::recorded::COLUMNS;
-use crate::document::kept;
+use crate::document::{Document, kept, markdown};
 use crate::plant::CHANNELS;
+use crate::report::{lacking as lacking_of, robust_range, variable};
 use crate::scene::Scene;
 use crate::scene::board::{Board, BoardLine, BoardRole, Cloud, CloudGroup, Lane, Sheet, SheetPlot};
 use crate::stats::{NORMAL_95, quantile};
@@ -41,7 +39,12 @@ const GOLDEN: f64 = 0.618_034;
 const SUBSYSTEMS: [&str; CHANNELS.len()] = ["regulator", "piston", "contact", "piston"];
 
 /// The screen of a diagnosis; `scene` is what a cell looks like.
-pub(super) fn board(answer: &Answer, comparison: &Comparison, scene: Option<Scene>) -> Board {
+pub(super) fn board(
+    answer: &Answer,
+    comparison: &Comparison,
+    scene: Option<Scene>,
+    report: &Document<'_>,
+) -> Board {
     let of_flange = !answer.details.runs.is_empty();
     let shown = shown(&comparison.recordings);
     let sheets: Vec<Sheet> = shown
@@ -64,10 +67,30 @@ pub(super) fn board(answer: &Answer, comparison: &Comparison, scene: Option<Scen
     let clouds = clouds.chain(balances.into_iter().map(of_balance));
     Board {
         title: format!("Diagnosis of {}", answer.details.case),
-        text: text::markdown(answer, left_out, thinned),
+        text: markdown(report) + &not_drawn(left_out, thinned),
         clouds: clouds.collect(),
         sheets,
         scene,
+    }
+}
+
+/// A note on what of the recordings is not drawn; nothing where all is.
+fn not_drawn(left_out: usize, thinned: bool) -> String {
+    let mut notes = Vec::new();
+    if left_out > 0 {
+        notes.push(format!("{left_out} more recordings are not drawn"));
+    }
+    if thinned {
+        let thinned =
+            "of long recordings the least and the largest value of each stretch are drawn";
+        notes.push(thinned.to_owned());
+    }
+    match notes.is_empty() {
+        true => String::new(),
+        false => {
+            let notes = capital(&notes.join("; "));
+            format!("\n*{notes}: comparison.parquet holds every sample.*\n")
+        }
     }
 }
 
@@ -372,7 +395,7 @@ mod tests {
             recordings,
             balances: Vec::new(),
         };
-        let board = board(&answer(&[]), &comparison, None);
+        let board = board(&answer(&[]), &comparison, None, &Document::default());
         assert_eq!(board.sheets.len(), MOST_SHEETS);
         let last = board.sheets.last().unwrap();
         assert_eq!(last.title, "last.csv (not fitted to), from 5.0 s on");

@@ -4,13 +4,14 @@ use std::path::Path;
 
 use super::super::error::AppError;
 use super::super::files::{BALANCE, BOARD, COMPARISON, DIAGNOSIS, OutputFolder, REPORT};
-use super::super::report::of_diagnosis;
 use super::board::board;
 use super::comparison_files::{write_balances, write_recordings};
 use crate::case::IMPROVED;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::difference::comparison::Comparison;
+use crate::document::{Style, html, text};
 use crate::recording::atomic::write_text;
+use crate::report;
 use crate::scene::Scene;
 use crate::viewer::write_board;
 
@@ -75,8 +76,8 @@ impl Outputs<'_> {
     pub(super) fn write(mut self, folder: &OutputFolder) -> Result<Finished, AppError> {
         self.answer.take_out_what_is_no_number();
         let document = self.answer.text()?;
-        let details = &self.answer.details;
-        let account = details.account.text(&details.case);
+        let report = report::diagnosis(&self.answer, self.comparison);
+        let account = text(&report, Style::Plain);
         let optional = [
             (PREDICTION, self.prediction),
             (PICTURE, self.picture),
@@ -95,9 +96,8 @@ impl Outputs<'_> {
             }
             write_recordings(&unfinished.join(COMPARISON), self.comparison)?;
             write_balances(&unfinished.join(BALANCE), self.comparison)?;
-            let report = of_diagnosis(&self.answer, self.comparison);
-            write_text(&unfinished.join(REPORT), &report)?;
-            let screen = board(&self.answer, self.comparison, self.scene);
+            write_text(&unfinished.join(REPORT), &html(&report))?;
+            let screen = board(&self.answer, self.comparison, self.scene, &report);
             write_board(&unfinished.join(BOARD), &screen)?;
             write_text(&unfinished.join(DIAGNOSIS), &document)?;
             // Those of another diagnosis would pass for some of this, and an old diagnosis beside new files for theirs.

@@ -6,7 +6,9 @@ use glam::DVec3;
 
 use super::super::space::{MILLIMETRES, body, floats};
 use super::part::{EYE, MOST_TRIANGLES, name_of, place, scene_of, short};
-use crate::document::{Block, Cell, Document, Drawing, DrawnLine, DrawnView, Section, Table, html};
+use crate::document::{
+    Block, Cell, Column, Document, Drawing, DrawnLine, DrawnView, Section, Table, html,
+};
 use crate::drawing::{self, Numbered};
 use crate::quantity::counted;
 use crate::workpiece::{EdgeFault, EdgeFlaw, MeshFault, PartFile};
@@ -112,7 +114,13 @@ fn line((number, edge): (usize, &EdgeFault<DVec3>)) -> DrawnLine {
 }
 
 fn table(edges: &[EdgeFault<DVec3>]) -> Table {
-    let columns = ["id", "fault", "#length, mm", "start, mm", "end, mm"];
+    let columns = vec![
+        Column::of_words("id"),
+        Column::of_words("fault"),
+        Column::of_numbers("length, mm"),
+        Column::of_words("start, mm"),
+        Column::of_words("end, mm"),
+    ];
     let row = |(number, edge): (usize, &EdgeFault<DVec3>)| {
         let [from, to] = edge.ends;
         let cells = [
@@ -125,5 +133,5 @@ fn table(edges: &[EdgeFault<DVec3>]) -> Table {
         cells.map(Cell::from).to_vec()
     };
     let rows = edges.iter().enumerate().map(row).collect();
-    Table::new("Faulty edges, in the part's frame.", &columns, rows)
+    Table::new("Faulty edges, in the part's frame.", columns, rows)
 }

@@ -9,7 +9,9 @@ use super::super::space::{MILLIMETRES, body, floats};
 use super::part::{
     EYE, MOST_TRIANGLES, MeshUnit, convexity, kind, name_of, place, scene_of, short,
 };
-use crate::document::{Block, Cell, Document, Drawing, DrawnLine, DrawnView, Section, Table, html};
+use crate::document::{
+    Block, Cell, Column, Document, Drawing, DrawnLine, DrawnView, Section, Table, html,
+};
 use crate::drawing::{self, Numbered};
 use crate::quantity::counted;
 use crate::workpiece::{Convexity, CurveKind, EdgeCurve, EdgeList, EdgeSearch, TriangleMesh};
@@ -254,16 +256,16 @@ fn to_paste((mesh, unit, sharp_angle): Source<'_>, curve: &EdgeCurve) -> String 
 
 /// All curves with their numbers.
 fn table(list: &EdgeList) -> Table {
-    let columns = [
-        "id",
-        "form",
-        "#length, mm",
-        "#angle, deg",
-        "side",
-        "start, mm",
-        "end, mm",
-        "closed",
-        "#corners",
+    let columns = vec![
+        Column::of_words("id"),
+        Column::of_words("form"),
+        Column::of_numbers("length, mm"),
+        Column::of_numbers("angle, deg"),
+        Column::of_words("side"),
+        Column::of_words("start, mm"),
+        Column::of_words("end, mm"),
+        Column::of_words("closed"),
+        Column::of_numbers("corners"),
     ];
     let row = |curve: &EdgeCurve| {
         let cells = [
@@ -281,7 +283,7 @@ fn table(list: &EdgeList) -> Table {
     };
     let curves = list.edges.iter().chain(&list.loops);
     let caption = "Edges, then outlines of faces (loops), in the part's frame. Angle: between the two faces, in the part at a convex edge and in the open at a concave one. Convex ones can be ridden.";
-    Table::new(caption, &columns, curves.map(row).collect())
+    Table::new(caption, columns, curves.map(row).collect())
 }
 
 fn length(curve: &EdgeCurve) -> String {

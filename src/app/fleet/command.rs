@@ -8,10 +8,11 @@ use super::super::engine::{EngineArguments, PLAN, Tasks};
 use super::super::error::{AppError, ExitCode};
 use super::super::files::{OutputFolder, OverwritePolicy, REPORT, is_same, output_folder};
 use super::super::output::say;
-use super::page::page_of;
+use super::page;
 use super::planned::{check, recordings, write, write_fits};
 use super::table::{FLEET, TABLE, write_table};
 use super::work::Worker;
+use crate::document::{Style, html, text};
 use crate::fleet::{Found, Layout, scan};
 use crate::quantity::counted;
 use crate::tasks::{Head, Plan, Store};
@@ -137,12 +138,12 @@ fn finish(
     let Head { program, files, .. } = Plan::open(plan)?.head;
     let found = Found::of(&recordings, layout, (&program, &files));
     let document = serde_json::to_string_pretty(&found)?;
-    let page = page_of(&found)?;
-    folder.write_texts(&[(REPORT, &page), (FLEET, &document)])?;
+    let report = page::document(&found)?;
+    folder.write_texts(&[(REPORT, &html(&report)), (FLEET, &document)])?;
     if arguments.json {
         say(&format!("{document}\n"))?;
     } else if !arguments.quiet {
-        say(&found.text())?;
+        say(&text(&report, Style::Plain))?;
         let out = folder.path().display();
         say(&format!("written to {out}: {TABLE}, {FLEET}, {REPORT}\n"))?;
     }

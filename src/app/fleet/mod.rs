@@ -7,6 +7,6 @@ mod table;
 mod work;
 
 pub(super) use command::{EXAMPLES, FleetArguments, run};
-pub(super) use page::page_of;
+pub(super) use page::document;
 pub(super) use table::FLEET;
 pub(super) use work::{KIND, Worker, report_result};

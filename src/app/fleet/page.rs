@@ -1,23 +1,18 @@
 //! The page of a fleet.
 
 use super::super::error::AppError;
-use super::super::report::sources;
 use super::table::TABLE;
 use crate::document::{
-    Block, Cell, Document, Fact, Figure, Horizontal, Marker, Panel, Role, Section, Series, Stroke,
-    Table, Tone, html,
+    Block, Cell, Column, Document, Fact, Figure, Horizontal, Marker, Panel, Role, Section, Series,
+    Stroke, Table, Tone,
 };
 use crate::figure::svg;
 use crate::fleet::{DeviceFound, Found, NumberChanged, NumberSeries, date_of_day, words};
 use crate::quantity::display_name::{display_name, number};
+use crate::report::sources;
 
-/// The page of a fleet.
-pub(in super::super) fn page_of(found: &Found) -> Result<String, AppError> {
-    Ok(html(&page(found)?))
-}
-
-/// The page.
-fn page(found: &Found) -> Result<Document<'static>, AppError> {
+/// The document of a fleet.
+pub(in super::super) fn document(found: &Found) -> Result<Document<'static>, AppError> {
     let something = found
         .devices
         .iter()
@@ -48,7 +43,7 @@ fn page(found: &Found) -> Result<Document<'static>, AppError> {
         facts: facts
             .map(|(name, value, remark)| Fact {
                 name: name.to_owned(),
-                value,
+                value: value.into(),
                 remark,
             })
             .to_vec(),
@@ -71,7 +66,7 @@ fn devices(found: &Found) -> Section<'static> {
             Cell::from(device.name.clone()),
             Cell::from(format!("{} to {}", device.first, device.last)),
             Cell::from(device.recordings.to_string()),
-            Cell::Judged(
+            Cell::Verdict(
                 match effects.is_empty() {
                     true => "nothing".to_owned(),
                     false => effects.join("; "),
@@ -81,15 +76,15 @@ fn devices(found: &Found) -> Section<'static> {
             Cell::from(single.collect::<Vec<_>>().join(", ")),
         ]
     };
-    let columns = [
-        "device",
-        "dates",
-        "#recordings",
-        "found",
-        "in single recordings",
+    let columns = vec![
+        Column::of_words("device"),
+        Column::of_words("dates"),
+        Column::of_numbers("recordings"),
+        Column::of_words("found"),
+        Column::of_words("in single recordings"),
     ];
     let caption = "Found: in at least three recordings and in half of those since. What single recordings show is no alarm.";
-    let table = Table::new(caption, &columns, found.devices.iter().map(row).collect());
+    let table = Table::new(caption, columns, found.devices.iter().map(row).collect());
     Section::new("Devices", vec![Block::Table(table)])
 }
 
@@ -117,20 +112,20 @@ fn changed(found: &Found) -> Option<Section<'static>> {
         })
     });
     let rows: Vec<Vec<Cell>> = rows.collect();
-    let columns = [
-        "device",
-        "effect",
-        "number",
-        "unit",
-        "#before",
-        "#at the end",
-        "since (95 %)",
-        "#trend a day (95 %)",
-        "#chance [%]",
+    let columns = vec![
+        Column::of_words("device"),
+        Column::of_words("effect"),
+        Column::of_words("number"),
+        Column::of_words("unit"),
+        Column::of_numbers("before"),
+        Column::of_numbers("at the end"),
+        Column::of_words("since (95 %)"),
+        Column::of_numbers("trend a day (95 %)"),
+        Column::of_numbers("chance [%]"),
     ];
     let words = "Chance: how often a number that does not change shows as much. All numbers of the fleet together give a false alarm in one of twenty reports.";
     (!rows.is_empty()).then(|| {
-        let table = Table::new("", &columns, rows);
+        let table = Table::new("", columns, rows);
         Section::new(
             "Numbers that changed",
             vec![Block::Hint(words.to_owned()), Block::Table(table)],
@@ -154,7 +149,10 @@ fn courses(found: &Found) -> Result<Option<Section<'static>>, AppError> {
         }
         blocks.push(Block::Heading(device.name.clone()));
         let title = String::new();
-        blocks.push(Block::Picture(svg(&Figure { title, panels })?));
+        blocks.push(Block::Picture(
+            device.name.clone(),
+            svg(&Figure { title, panels })?,
+        ));
     }
     Ok((!blocks.is_empty()).then(|| Section::new("Over the days", blocks)))
 }
@@ -203,7 +201,11 @@ fn listed(title: &str, columns: [&str; 2], pairs: &[(String, String)]) -> Option
     let row =
         |(one, other): &(String, String)| vec![Cell::from(one.clone()), Cell::from(other.clone())];
     (!pairs.is_empty()).then(|| {
-        let table = Table::new("", &columns, pairs.iter().map(row).collect());
+        let table = Table::new(
+            "",
+            columns.map(Column::of_words).to_vec(),
+            pairs.iter().map(row).collect(),
+        );
         Section::new(title, vec![Block::Table(table)])
     })
 }

@@ -1,17 +1,14 @@
-//! A run of a cell, watched part by part while it goes on, and its summary.json.
+//! A run of a cell, watched part by part while it goes on.
 
 use std::time::Instant;
 
 use super::super::error::AppError;
 use super::super::picture::{motion_of, scene_of};
 use super::super::viewer::{PART_INTERVAL, Watch};
-use super::source::Source;
-use crate::cell::{Cell, EstimatedArm};
-use crate::metrics::{BoundCheck, Summary, Timing};
-use crate::recording::provenance::Provenance;
+use crate::cell::Cell;
+use crate::metrics::Timing;
 use crate::recording::{Recording, RecordingError};
 use crate::run::{FinishedCell, run_cell};
-use crate::scenario::{AssumedValue, ChamferScenario};
 use crate::scene::Scene;
 use crate::simulation::{FrameLog, SampleLog};
 
@@ -40,19 +37,6 @@ pub(super) fn run_observed(
             Ok(finished)
         }
     }
-}
-
-/// Tolerance of the edge; a leg without upper bound has none.
-fn chamfer(cell: &Cell) -> serde_json::Value {
-    let ChamferScenario {
-        leg: [least, most],
-        residual_burr,
-    } = cell.setup.scenario.workpiece.chamfer;
-    serde_json::json!({
-        "leg_min_mm": 1e3 * least,
-        "leg_max_mm": most.is_finite().then_some(1e3 * most),
-        "residual_burr_max_mm": 1e3 * residual_burr,
-    })
 }
 
 /// Samples and frames of a run that have come since the last part.
@@ -121,74 +105,5 @@ impl<'a> Listener<'a> {
         self.samples = samples.count();
         self.frames = frames.times.len();
         (self.observe)(part)
-    }
-}
-
-/// Content of summary.json, which `--json` prints.
-#[derive(serde::Serialize)]
-pub(super) struct SummaryDocument<'a> {
-    schema: u32,
-    scenario: &'a str,
-    title: &'a str,
-    /// Keys that have other values than in the scenario's file.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    set: Option<serde_json::Value>,
-    /// What the edge should be like, where a tool turns.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    chamfer: Option<serde_json::Value>,
-    /// Reason for an early stop of the run; null if it ran to its end.
-    stopped: Option<String>,
-    summary: &'a Summary,
-    expectations: &'a [BoundCheck],
-    joint_names: Vec<&'a str>,
-    samples: usize,
-    notes: &'a [String],
-    /// Masses of the arm that are estimated, and what that leaves open.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    estimated_masses: Option<&'a EstimatedArm>,
-    /// Values in use that nobody has measured in public.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    #[serde(rename = "judged")]
-    assumed: Vec<&'a AssumedValue>,
-    provenance: &'a Provenance,
-}
-
-impl<'a> SummaryDocument<'a> {
-    /// The document of a run.
-    pub(super) fn new(
-        cell: &'a Cell,
-        finished: &'a FinishedCell,
-        expectations: &'a [BoundCheck],
-        source: &'a Source,
-        origin: &'a Provenance,
-    ) -> Self {
-        Self {
-            schema: 1,
-            scenario: &source.name,
-            title: &cell.setup.scenario.title,
-            set: source.set(),
-            chamfer: finished.edge.as_ref().map(|_| chamfer(cell)),
-            stopped: finished.stop.as_ref().map(ToString::to_string),
-            summary: &finished.summary,
-            expectations,
-            joint_names: cell
-                .setup
-                .arm
-                .chain
-                .joints
-                .iter()
-                .map(|joint| joint.name.as_str())
-                .collect(),
-            samples: finished.recording.sample_count(),
-            notes: &cell.setup.notes,
-            estimated_masses: cell.estimated.as_ref(),
-            assumed: cell.setup.scenario.assumed_values().collect(),
-            provenance: origin,
-        }
-    }
-
-    /// As JSON.
-    pub(super) fn text(&self) -> Result<String, AppError> {
-        Ok(serde_json::to_string_pretty(self)?)
     }
 }

@@ -14,7 +14,7 @@ use super::super::viewer::{Viewing, Watch};
 use super::job::RunOptions;
 use super::settings::{Setting, Variant, with_flags};
 use super::source::Source;
-use crate::report::Style;
+use crate::document::Style;
 use crate::run::{Job, RunError};
 use crate::scenario::{AnyScenario, EffectRequest, ScenarioTemplate};
 use crate::viewer::Opening;

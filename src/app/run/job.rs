@@ -6,24 +6,21 @@ use super::super::edge_course::edge_course;
 use super::super::error::{AppError, ExitCode};
 use super::super::files::{
     DRAWING, EDGE, EDGE_PROFILE, FIGURES, LEAN, OutputFolder, Picture, RECORDING, RunOutput,
-    Sketches,
+    sketches,
 };
 use super::super::picture::{across_the_edge, finished_edge, scene_of};
-use super::super::report::page_of_run;
 use super::super::streaming::StreamingRecording;
 use super::super::viewer::Watch;
 use super::super::{bench, bench_figures, bench_picture};
-use super::cell_run::{Listener, SummaryDocument, run_observed};
+use super::cell_run::{Listener, run_observed};
 use super::source::Source;
 use crate::cell::Cell;
-use crate::metrics::{BoundCheck, Summary};
+use crate::document::{Style, html, markdown, text};
 use crate::recording::csv::EdgeProfile;
 use crate::recording::provenance::Provenance;
-use crate::report::{
-    Style, bench_markdown, bench_text, drives as saturated_drives, markdown, text,
-};
+use crate::report::{RunReport, Sketches, drives};
 use crate::rig::Rig;
-use crate::run::Job;
+use crate::run::{Job, RunResult};
 use crate::scenario::{BenchScenario, Scenario, files_of_cell};
 use crate::scene::Scene;
 use crate::scene::finished_edge::FinishedEdge;
@@ -97,7 +94,7 @@ impl Job {
         source.provenance(&files, seed)
     }
 
-    /// Runs it and writes its files. `progress` gets steps done and in all.
+    /// Runs it and writes its files. `progress` is given steps done and in all.
     pub(super) fn perform(
         &self,
         source: &Source,
@@ -138,9 +135,8 @@ fn perform_cell(
         let of_stream = streaming.iter().map(StreamingRecording::listener);
         let listeners = watching.into_iter().chain(of_stream).collect();
         let finished = run_observed(cell, progress, listeners)?;
-        let verdicts = finished.bounds(cell)?;
-        let title = &cell.setup.scenario.title;
-        let document = SummaryDocument::new(cell, &finished, &verdicts, source, &origin).text()?;
+        let bounds = finished.bounds(cell)?;
+        let result = RunResult::of_cell(cell, &finished, bounds, source.origin(origin));
         let course = edge_course(cell, &finished.recording)?;
         let worked = (finished.edge.as_ref()).map(|edge| FinishedEdge {
             course,
@@ -150,26 +146,26 @@ fn perform_cell(
             finished_edge: worked,
             ..scene_of(cell, &finished.recording, &finished.frames)?
         };
-        let summary = markdown(title, &finished.summary, &verdicts);
-        let (report, encoded) = rayon::join(
-            || {
-                let sketches = Sketches {
-                    lean: Some(across_the_edge(cell)),
-                    ..Sketches::of(&scene, &finished.recording)
-                };
-                let page = page_of_run(
-                    &document,
-                    &finished.recording,
-                    finished.edge.as_ref(),
-                    &sketches,
-                );
-                page.map(|page| (page, sketches))
-            },
+        let sketches = Sketches {
+            lean: Some(across_the_edge(cell)),
+            ..sketches(&scene, &finished.recording)
+        };
+        let report = RunReport {
+            result: &result,
+            recording: &finished.recording,
+            sketches: &sketches,
+            profile: finished.edge.as_ref(),
+        };
+        let report = report.document();
+        let summary = markdown(&report);
+        let (page, encoded) = rayon::join(
+            || html(&report),
             || streaming.map(|streaming| streaming.end(&finished.recording, &scene, &summary)),
         );
-        let ((report, sketches), encoded) = (report?, encoded.transpose()?);
+        let encoded = encoded.transpose()?;
+        let document = serde_json::to_string_pretty(&result)?;
         let names = folder.write(RunOutput {
-            title,
+            title: &result.title,
             recording: &finished.recording,
             picture: encoded
                 .map(|encoded| -> Picture<'_> { Box::new(move |path| encoded.write(path)) }),
@@ -178,16 +174,14 @@ fn perform_cell(
             figures: None,
             varied: source.copy(),
             sketches: &sketches,
-            report: &report,
+            report: &page,
         })?;
-        let (code, mut messages) = exit_code(finished.stop.as_ref(), &verdicts);
-        messages.extend(drives_at_their_limit(&finished.summary));
         Ok(RunOutcome {
-            table: text(title, &finished.summary, &verdicts, run_options.style),
+            table: text(&report, run_options.style),
+            messages: messages(&result),
+            code: code(&result),
             document,
             names,
-            messages,
-            code,
             shown: (scene, summary),
         })
     })
@@ -204,13 +198,20 @@ fn perform_bench(
     let (origin, _) = job.provenance(source)?;
     let finished = bench::run_watched(rig, progress, watch)?;
     let scenario = &rig.scenario;
-    let verdicts = finished.bounds(rig)?;
-    let document = bench::document(scenario, &finished, &verdicts, source, &origin)?;
+    let bounds = finished.bounds(rig)?;
+    let result = RunResult::of_bench(rig, &finished, bounds, source.origin(origin));
     let scene = bench_picture::scene_of(scenario, &finished.recording)?;
-    let sketches = Sketches::of(&scene, &finished.recording);
-    let report = page_of_run(&document, &finished.recording, None, &sketches)?;
+    let sketches = sketches(&scene, &finished.recording);
+    let report = RunReport {
+        result: &result,
+        recording: &finished.recording,
+        sketches: &sketches,
+        profile: None,
+    };
+    let report = report.document();
+    let document = serde_json::to_string_pretty(&result)?;
     let options = RerunOptions {
-        summary_markdown: bench_markdown(&scenario.title, &finished.summary, &verdicts),
+        summary_markdown: markdown(&report),
         opening: run_options.opening,
         ..RerunOptions::default()
     };
@@ -224,61 +225,35 @@ fn perform_bench(
         figures: Some(&bench_figures::figures(scenario, &finished.recording)?),
         varied: source.copy(),
         sketches: &sketches,
-        report: &report,
+        report: &html(&report),
     })?;
-    let (code, messages) = exit_code(finished.stop.as_ref(), &verdicts);
     Ok(RunOutcome {
-        table: bench_text(
-            &scenario.title,
-            &finished.summary,
-            &verdicts,
-            run_options.style,
-        ),
+        table: text(&report, run_options.style),
+        messages: messages(&result),
+        code: code(&result),
         document,
         names,
-        messages,
-        code,
         shown: (scene, options.summary_markdown),
     })
 }
 
-/// Why a run stopped early, if it did, or else which results lie outside their bounds.
-pub(super) fn exit_code(
-    stop: Option<&impl std::fmt::Display>,
-    verdicts: &[BoundCheck],
-) -> (ExitCode, Vec<String>) {
-    if let Some(stop) = stop {
-        return (ExitCode::Stopped, vec![format!("stopped: {stop}")]);
-    }
-    let outside = verdicts.iter().filter(|verdict| !verdict.kept);
-    let messages: Vec<String> = outside
-        .map(|verdict| sentence(&verdict.name(), verdict.value, [verdict.min, verdict.max]))
-        .collect();
-    match messages.is_empty() {
-        true => (ExitCode::Done, messages),
-        false => (ExitCode::OutsideBounds, messages),
+/// Exit code of a result.
+pub(super) fn code(result: &RunResult) -> ExitCode {
+    if result.stopped.is_some() {
+        ExitCode::Stopped
+    } else if result.is_within_bounds() {
+        ExitCode::Done
+    } else {
+        ExitCode::OutsideBounds
     }
 }
 
-/// Which drives were at their limit, when and for how long.
-fn drives_at_their_limit(summary: &Summary) -> Option<String> {
-    let drives = saturated_drives(summary)?;
-    Some(format!(
-        "drives at their limit: {drives} ([expect] drives_saturated_s = {{ max = .. }} sets how long they may be)"
-    ))
-}
-
-/// A result that lies outside its bounds, from least to largest.
-pub(super) fn sentence(metric: &str, value: Option<f64>, [min, max]: [Option<f64>; 2]) -> String {
-    let bound = |word: &str, bound: Option<f64>| bound.map(|bound| format!("{word} {bound}"));
-    let bounds = [bound("at least", min), bound("at most", max)];
-    let bounds = bounds
-        .into_iter()
-        .flatten()
-        .collect::<Vec<_>>()
-        .join(" and ");
-    let value = value.map_or("not determined by this run".to_owned(), |value| {
-        format!("{value:.6}")
+/// Messages on standard error: what stopped it, or which results lie outside their bounds, and drives at their limit.
+fn messages(result: &RunResult) -> Vec<String> {
+    let drives = drives(result).map(|drives| {
+        format!(
+            "drives at their limit: {drives} ([expect] drives_saturated_s = {{ max = .. }} sets how long they may be)"
+        )
     });
-    format!("outside its bounds: {metric} is {value}, expected {bounds}")
+    result.complaints().into_iter().chain(drives).collect()
 }

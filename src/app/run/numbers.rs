@@ -3,8 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::super::error::{AppError, ExitCode};
-use super::job::exit_code;
-use crate::run::{Job, RunError};
+use crate::run::{Job, RunError, outside};
 use crate::scenario::AnyScenario;
 
 /// The numbers of a run.
@@ -32,10 +31,15 @@ pub(in super::super) fn numbers(scenario: AnyScenario) -> Numbers {
     };
     let run = Job::new(scenario).and_then(|job| job.run(&mut |_, _| ()));
     run.map_or_else(refused, |outcome| {
-        let (code, reasons) = exit_code(outcome.stop.as_ref(), &outcome.bounds);
+        let outside = outside(&outcome.bounds);
+        let (code, reason) = match &outcome.stop {
+            Some(stop) => (ExitCode::Stopped, format!("stopped: {stop}")),
+            None if outside.is_empty() => (ExitCode::Done, String::new()),
+            None => (ExitCode::OutsideBounds, outside.join("; ")),
+        };
         Numbers {
             code: code as u8,
-            reason: reasons.join("; "),
+            reason,
             metrics: outcome.metrics.iter().map(|(_, value)| *value).collect(),
         }
     })

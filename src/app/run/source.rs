@@ -7,6 +7,7 @@ use serde_json::Value;
 use super::super::error::AppError;
 use super::super::files::{VARIED, provenance};
 use crate::recording::provenance::{Provenance, SourceFile};
+use crate::run::RunOrigin;
 use crate::scenario::{KeyValue, ScenarioError, ScenarioTemplate};
 
 /// A scenario as a run's files name it.
@@ -71,6 +72,15 @@ impl Source {
                 .map(|edit| (edit.key().to_owned(), value(edit)))
                 .collect(),
         )
+    }
+
+    /// What a result says of it.
+    pub(super) fn origin(&self, provenance: Provenance) -> RunOrigin {
+        RunOrigin {
+            scenario: self.name.clone(),
+            set: self.set(),
+            provenance,
+        }
     }
 
     /// Where a run of files, the scenario's first, comes from; and what the run is made of, wherever its files stand.

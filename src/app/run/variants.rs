@@ -7,17 +7,20 @@ use serde_json::Value;
 
 use super::super::compare::write_page;
 use super::super::error::{AppError, ExitCode};
-use super::super::files::{OutputFolder, OverwritePolicy, RUN_NAMES, SUMMARY, prepare_file};
+use super::super::files::{OutputFolder, OverwritePolicy, RUN_NAMES, prepare_file};
 use super::super::interrupt::Interruptible;
 use super::super::output::say;
 use super::super::progress;
 use super::super::report::read_json;
 use super::command::RunArguments;
+use super::job::code;
 use super::settings::{Variant, blamed, with_flags};
 use super::source::Source;
-use super::table::{Done, table};
+use super::table::{Done, document};
+use crate::document::text;
 use crate::proof::in_order;
-use crate::run::Job;
+use crate::report::SUMMARY;
+use crate::run::{Job, RunResult};
 use crate::scenario::ScenarioTemplate;
 
 /// The page beside the folders.
@@ -55,7 +58,7 @@ pub(super) fn run(
     let count = variants.len();
     let interruptible = Interruptible::of_many(count, "runs are done", &out);
     let failed = AtomicUsize::new(0);
-    let outcomes = in_order(count, jobs, |index| {
+    let outcome = in_order(count, jobs, |index| {
         // What a full disk does to one it does to all.
         if failed.load(Ordering::Relaxed) > 0 {
             return Ok(None);
@@ -83,7 +86,7 @@ pub(super) fn run(
     });
     bar.finish_and_clear();
     let mut runs = Vec::new();
-    for (index, outcome) in outcomes.into_iter().enumerate() {
+    for (index, outcome) in outcome.into_iter().enumerate() {
         let fault = || AppError::Fault {
             part: variants[index].name.clone(),
         };
@@ -116,8 +119,8 @@ fn one(
         OverwritePolicy::Keep => existing(folder.path(), &job, &source, !arguments.no_recording)?,
         _ => None,
     };
-    let document = match existing {
-        Some(document) => document,
+    let result = match existing {
+        Some(result) => result,
         None => {
             let outcome = job.perform(&source, folder, arguments.run_options(), None, progress)?;
             serde_json::from_str(&outcome.document)?
@@ -126,7 +129,7 @@ fn one(
     Ok(Done {
         folder: folder.path().to_owned(),
         variant: variant.clone(),
-        document,
+        result,
     })
 }
 
@@ -136,38 +139,38 @@ fn existing(
     job: &Job,
     source: &Source,
     recorded: bool,
-) -> Result<Option<Value>, AppError> {
+) -> Result<Option<RunResult>, AppError> {
     let needed = RUN_NAMES.iter().filter(|name| job.writes(name, recorded));
     if !needed.into_iter().all(|name| folder.join(name).is_file()) {
         return Ok(None);
     }
-    let Ok(document) = read_json::<Value>(&folder.join(SUMMARY)) else {
+    let Ok(result) = read_json::<RunResult>(&folder.join(SUMMARY)) else {
         return Ok(None);
     };
     let (origin, _) = job.provenance(source)?;
-    let same = document["provenance"] == serde_json::to_value(origin)?;
-    Ok(same.then_some(document))
+    Ok((result.provenance == origin).then_some(result))
 }
 
 /// Prints what came of them.
 fn print_result(arguments: &RunArguments, out: &Path, runs: &[Done]) -> Result<ExitCode, AppError> {
     if arguments.json {
         let with_folder = |run: &Done| {
-            let mut document = run.document.clone();
+            let mut document = serde_json::to_value(&run.result)?;
             document["folder"] = run.folder.display().to_string().into();
-            document
+            Ok(document)
         };
-        let all: Vec<Value> = runs.iter().map(with_folder).collect();
+        let all: Result<Vec<Value>, AppError> = runs.iter().map(with_folder).collect();
+        let all = all?;
         say(&format!("{}\n", serde_json::to_string_pretty(&all)?))?;
     } else if !arguments.quiet {
-        say(&table(runs))?;
+        say(&text(&document(runs), arguments.run_options().style))?;
         let count = runs.len();
         let folder = out.display();
         say(&format!("written to {folder}: {count} folders, {PAGE}\n"))?;
     }
     let codes = runs.iter().map(|run| {
-        let code = run.code();
-        for line in super::table::outside(&run.document) {
+        let code = code(&run.result);
+        for line in run.result.complaints() {
             eprintln!("{}: {line}", run.variant.name);
         }
         code

@@ -8,9 +8,10 @@ use super::super::engine::{EngineArguments, PLAN, Tasks};
 use super::super::error::{AppError, ExitCode};
 use super::super::files::{OutputFolder, OverwritePolicy, REPORT, output_folder};
 use super::super::output::say;
-use super::page::page_of;
+use super::page;
 use super::table::{RUNS, SWEEP, columns, write_table};
 use super::work::Worker;
+use crate::document::{Style, html, text};
 use crate::quantity::counted;
 use crate::run::apply_effects;
 use crate::scenario::{EffectRequest, ScenarioTemplate};
@@ -177,13 +178,13 @@ fn finish(
     let Head { program, files, .. } = Plan::open(plan)?.head;
     let swept = Swept::of(sweep, (&program, &files), &|wanted| columns(&table, wanted))?;
     let document = serde_json::to_string_pretty(&swept)?;
-    let page = page_of(&swept, &table)?;
+    let report = page::document(&swept, &table)?;
     let folder = OutputFolder::prepare(out, &[], OverwritePolicy::Keep)?;
-    folder.write_texts(&[(REPORT, &page), (SWEEP, &document)])?;
+    folder.write_texts(&[(REPORT, &html(&report)), (SWEEP, &document)])?;
     if arguments.json {
         say(&format!("{document}\n"))?;
     } else if !arguments.quiet {
-        say(&swept.text())?;
+        say(&text(&report, Style::Plain))?;
         let folder = out.display();
         say(&format!("written to {folder}: {RUNS}, {SWEEP}, {REPORT}\n"))?;
     }

@@ -7,7 +7,7 @@ mod table;
 mod work;
 
 pub(super) use command::{EXAMPLES, VaryArguments, run};
-pub(super) use page::page_of;
+pub(super) use page::document;
 pub(super) use planned::Files;
 pub(super) use table::{RUNS, SWEEP};
 pub(super) use work::{KIND, Worker, report_result};

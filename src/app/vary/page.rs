@@ -3,17 +3,17 @@
 use std::path::Path;
 
 use super::super::error::AppError;
-use super::super::report::sources;
 use super::table::{RUNS, columns};
 use crate::document::{
-    Block, Cell, Document, Figure, Horizontal, Panel, Role, Section, Series, Stroke, Table, Tone,
-    html,
+    Block, Cell, Column, Document, Figure, Horizontal, Panel, Role, Section, Series, Stroke, Table,
+    Tone,
 };
 use crate::figure::svg;
 use crate::metrics::Label;
 use crate::quantity::display_name::{display_name, number as plain};
 use crate::quantity::{UNKNOWN, column, number};
 use crate::recording::long_column::LongColumn;
+use crate::report::sources;
 use crate::stats::quantiles;
 use crate::vary::{MetricOfRuns, QUANTILES, Swept, percent, short};
 
@@ -24,26 +24,25 @@ const POINTS: usize = 2000;
 /// Steps of a curve of shares.
 const STEPS: usize = 100;
 
-/// The page of a sweep, of its document and the table beside it.
-pub(in super::super) fn page_of(swept: &Swept, table: &Path) -> Result<String, AppError> {
+/// The document of a sweep, of its result and the table beside it.
+pub(in super::super) fn document(
+    swept: &Swept,
+    table: &Path,
+) -> Result<Document<'static>, AppError> {
     debug_assert!(table.ends_with(RUNS));
-    Ok(html(&page(swept, table)?))
-}
-
-fn page(swept: &Swept, table: &Path) -> Result<Document<'static>, AppError> {
     let clean = !swept.codes.keys().any(|code| *code > 0);
     let stopped = swept.stopped.iter();
     let stopped = stopped.map(|(run, reason)| format!("Run {run}: {reason}"));
     let mut sections = vec![drivers(swept)];
-    sections.extend(pictures(swept, table)?);
-    sections.push(distribution(swept));
+    sections.extend(pictures(swept, table)?.map(Section::appendix));
+    sections.push(distribution(swept).appendix());
     sections.push(varied(swept));
     sections.push(sources(&swept.program, &swept.files));
     Ok(Document {
         title: format!("Sweep of {}", swept.title),
         verdict: swept.verdict(),
         tone: if clean { Tone::Good } else { Tone::Found },
-        lead: stopped.collect(),
+        lead: swept.findings().into_iter().chain(stopped).collect(),
         sections,
         footer: format!(
             "Made by idc vary. {RUNS} beside this page has a row for each run; a run is done again in full by idc run with its values (--set)."
@@ -108,20 +107,20 @@ fn drivers(swept: &Swept) -> Section<'static> {
     let words = "Share of a number's variance over the runs that goes with one variable alone (first-order index), with its interval at 95 %; what is missing \
                  to 100 % is due to variables together, and to what is drawn at random. By chance: what the same values get at most, 95 times of 100, where they are shuffled \
                  among the runs; a share is named where its whole interval lies above that. Rank correlation: 1 where the number only grows with the variable, -1 where it only falls.";
-    let columns = [
-        "number",
-        "driven by",
-        "#share [%]",
-        "#interval [%]",
-        "",
-        "#by chance [%]",
-        "#rank correlation",
+    let columns = vec![
+        Column::of_words("number"),
+        Column::of_words("driven by"),
+        Column::of_numbers("share [%]"),
+        Column::of_numbers("interval [%]"),
+        Column::of_words(""),
+        Column::of_numbers("by chance [%]"),
+        Column::of_numbers("rank correlation"),
     ];
     let block = match rows.is_empty() {
         true => Block::Paragraph(
             "No number differs between the runs, or there are too few runs to say.".to_owned(),
         ),
-        false => Block::Table(Table::new("", &columns, rows)),
+        false => Block::Table(Table::new("", columns, rows)),
     };
     Section::new(
         "Which variable drives which number",
@@ -171,16 +170,16 @@ fn distribution(swept: &Swept) -> Section<'static> {
         Some(first.chain(cells).chain([runs]).collect())
     });
     let heads = QUANTILES.map(|share| match share {
-        0.0 => "#least".to_owned(),
-        1.0 => "#greatest".to_owned(),
-        0.5 => "#median".to_owned(),
-        share => format!("#{:.0} %", 100.0 * share),
+        0.0 => "least".to_owned(),
+        1.0 => "greatest".to_owned(),
+        0.5 => "median".to_owned(),
+        share => format!("{:.0} %", 100.0 * share),
     });
-    let mut columns = vec!["number"];
-    columns.extend(heads.iter().map(String::as_str));
-    columns.push("#runs");
+    let mut columns = vec![Column::of_words("number")];
+    columns.extend(heads.map(Column::of_numbers));
+    columns.push(Column::of_numbers("runs"));
     let caption = "Values below which these shares of the runs lie; runs that do not determine a number are left out.";
-    let table = Table::new(caption, &columns, rows.collect());
+    let table = Table::new(caption, columns, rows.collect());
     Section::new("Distribution of every number", vec![Block::Table(table)])
 }
 
@@ -201,8 +200,14 @@ fn varied(swept: &Swept) -> Section<'static> {
         .to_vec()
     });
     let caption = format!("The points are {}.", swept.points);
-    let columns = ["key", "#values", "unit", "which", "#different"];
-    let table = Table::new(&caption, &columns, rows.collect());
+    let columns = vec![
+        Column::of_words("key"),
+        Column::of_numbers("values"),
+        Column::of_words("unit"),
+        Column::of_words("which"),
+        Column::of_numbers("different"),
+    ];
+    let table = Table::new(&caption, columns, rows.collect());
     Section::new("What was varied", vec![Block::Table(table)])
 }
 
@@ -228,7 +233,7 @@ fn pictures(swept: &Swept, table: &Path) -> Result<Option<Section<'static>>, App
             panels,
         };
         blocks.push(Block::Heading(label.name.clone()));
-        blocks.push(Block::Picture(svg(&figure)?));
+        blocks.push(Block::Picture(label.name.clone(), svg(&figure)?));
     }
     let words = "Above, each run over the variable that drives the number most; below, the share of the runs in which it is no larger.";
     Ok((!blocks.is_empty()).then(|| {

@@ -7,6 +7,7 @@ use super::style::{
     Area, CHOSEN, CHOSEN_WORDS, Chart, DARK, Drawn, FONT, GREY, LIMIT, LIMIT_WORDS, PX, TEXT,
     inside, limits_of,
 };
+use crate::design::limits::Side;
 use crate::design::result::{LimitState, StudyResult};
 use crate::quantity::display_name::{raised, with_unit};
 
@@ -34,7 +35,7 @@ pub(super) fn limits(
     let ((left, bottom), (right, top)) = (at(across.0, up.0), at(across.1, up.1));
     let vertical = limits_of(result, trade_off).map(|limit| {
         let (x, _) = at(limit.bound, up.0);
-        let at_most = limit.side == "max";
+        let at_most = limit.side == Side::Max;
         let forbidden = if at_most { right } else { left };
         let words = words_of(limit);
         // On the forbidden side, where no data are, if there is room.
@@ -52,7 +53,7 @@ pub(super) fn limits(
     });
     let horizontal = limits_of(result, &result.objectives.minimised).map(|limit| {
         let (_, y) = at(across.0, limit.bound);
-        let at_most = limit.side == "max";
+        let at_most = limit.side == Side::Max;
         let forbidden = if at_most { top } else { bottom };
         let gap = if at_most { -14 * PX } else { 14 * PX };
         let line = LimitLine {
@@ -69,7 +70,7 @@ pub(super) fn limits(
 }
 
 fn words_of(limit: &LimitState) -> String {
-    let side = if limit.side == "max" {
+    let side = if limit.side == Side::Max {
         "at most"
     } else {
         "at least"

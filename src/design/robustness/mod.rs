@@ -14,7 +14,7 @@ mod draws;
 use crate::stats::{normal_quantile, normal_share_below};
 use std::collections::BTreeMap;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::keys::error::Location;
 
@@ -51,7 +51,7 @@ pub struct Scatter {
 }
 
 /// A distribution, in its key's unit.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Distribution {
     /// Evenly between two ends.
@@ -63,7 +63,7 @@ pub enum Distribution {
         /// Standard deviation.
         standard_deviation: f64,
         /// Least and greatest value; none where it has no end.
-        #[serde(serialize_with = "finite")]
+        #[serde(serialize_with = "finite", deserialize_with = "endless")]
         bounds: [f64; 2],
     },
 }
@@ -73,6 +73,15 @@ fn finite<S: serde::Serializer>(bounds: &[f64; 2], serializer: S) -> Result<S::O
     bounds
         .map(|bound| bound.is_finite().then_some(bound))
         .serialize(serializer)
+}
+
+/// The reverse of [`finite`].
+fn endless<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<[f64; 2], D::Error> {
+    let [low, high] = <[Option<f64>; 2]>::deserialize(deserializer)?;
+    Ok([
+        low.unwrap_or(f64::NEG_INFINITY),
+        high.unwrap_or(f64::INFINITY),
+    ])
 }
 
 impl Scatter {
@@ -107,7 +116,7 @@ impl Scatter {
 }
 
 /// What the draws did.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Robustness {
     /// Number of draws.
     pub runs: usize,
@@ -128,7 +137,7 @@ pub struct Robustness {
 }
 
 /// What was drawn.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DrawnVariable {
     /// Its key.
     pub key: String,
@@ -137,7 +146,7 @@ pub struct DrawnVariable {
 }
 
 /// A share of the draws.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct KeptShare {
     /// Draws that count.
     pub kept: usize,
@@ -148,7 +157,7 @@ pub struct KeptShare {
 }
 
 /// Draws that keep a limit.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LimitShare {
     /// `impact_peak_n at most 400 N`.
     pub limit: String,
@@ -158,7 +167,7 @@ pub struct LimitShare {
 }
 
 /// How a quantity is distributed over the draws, in its unit.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Quantiles {
     /// Metric, unit included.
     pub metric: String,
@@ -173,7 +182,7 @@ pub struct Quantiles {
 }
 
 /// A draw.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Draw {
     /// Values that were drawn, in the order of the variables.
     pub values: Vec<f64>,

@@ -7,7 +7,6 @@ use crate::design::archive::{Archive, EvaluatedDesign, Good};
 use crate::design::error::DesignError;
 use crate::design::front::{non_dominated, thinned};
 use crate::design::goal::Goal;
-use crate::design::limits::Side;
 use crate::design::result::{Candidate, FrontPoint, LimitState, ObjectiveNames, StudyResult};
 use crate::design::sensitivity::{ACTIVE, active_bounds, active_limits, sensitivities};
 use crate::design::study::{Over, Study, TradeOff};
@@ -71,12 +70,12 @@ fn names(study: &Study) -> ObjectiveNames {
         Over::Worst => "worst",
     };
     let over = match &study.trade_off {
-        Some(TradeOff::Metric(metric)) => Some(word(metric.over)),
+        Some(TradeOff::Metric(metric)) => Some(word(metric.over).into()),
         _ => None,
     };
     ObjectiveNames {
         minimised: study.objective.metric.clone(),
-        minimised_over: word(study.objective.over),
+        minimised_over: word(study.objective.over).into(),
         trade_off: study.trade_off_key().map(str::to_owned),
         trade_off_over: over,
         scenarios: study.scenarios.len(),
@@ -105,10 +104,7 @@ fn candidate(study: &Study, (evaluated, scored): &Good) -> Candidate {
     let limits = pairs.map(|(limit, excess)| LimitState {
         limit: limit.sentence(),
         key: limit.key().to_owned(),
-        side: match limit.side {
-            Side::Min => "min",
-            Side::Max => "max",
-        },
+        side: limit.side,
         bound: limit.bound,
         value: limit.value(&scored.outcome).unwrap_or(f64::NAN),
         kept: *excess <= 0.0,

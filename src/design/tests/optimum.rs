@@ -55,7 +55,7 @@ fn what_binds_is_named_with_its_price() {
         .iter()
         .map(|b| (b.variable.as_str(), b.side))
         .collect();
-    assert_eq!(bounds, [("supply_orifice_mm2", "max")]);
+    assert_eq!(bounds, [("supply_orifice_mm2", crate::design::Side::Max)]);
     // A tenth more orifice, alone, and the peak's limit a tenth higher with all chosen anew: both in closed form.
     let best = least_variation(200.0);
     let wider = 100.0 * (variation(6.6, 4.0, 15.0, 40.0) / best - 1.0);

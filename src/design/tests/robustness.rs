@@ -171,14 +171,16 @@ fn draws_lie_within_their_bounds_and_whole_ones_are_whole() {
 fn table_and_picture_tell_the_share_with_its_interval() {
     let study = read(TEXT).unwrap();
     let result = search(TEXT, &Planted).unwrap();
-    let table = crate::design::text(&study, &result);
+    let table = super::output::shown(&study, &result);
     let share = &result.robustness.as_ref().unwrap().all_limits;
     let [low, high] = share.interval_percent;
-    let line = format!("{:.0} %  {low:.0} to {high:.0} %", share.share_percent);
+    let ends = format!("{low:.0} to {high:.0}");
+    let percent = format!("{:.0}", share.share_percent);
     for part in [
-        "Robustness: 50 draws at the chosen design",
-        &line,
-        "Quantiles of the draws",
+        "Robustness",
+        "Of 50 draws at the chosen design",
+        &ends,
+        &percent,
     ] {
         assert!(table.contains(part), "{part} in:\n{table}");
     }

@@ -1,11 +1,11 @@
 //! Numbers, units and lines as people read them.
 
+pub use crate::document::wrapped;
+pub use crate::quantity::{capital, listed, percent};
+
 use crate::diagnosis::recordings::recorded::COLUMNS;
 use crate::plant::{CHANNELS, Channel};
 use crate::quantity::significant;
-
-/// Letters in a line of an account.
-const WIDTH: usize = 100;
 
 /// A unit for people: suffix of a name in SI, unit, and what a value in SI is multiplied by.
 type DisplayUnit = (&'static str, &'static str, f64);
@@ -142,17 +142,6 @@ pub fn of_column(column: &str) -> (String, &'static str, f64) {
     }
 }
 
-/// A share in percent.
-#[must_use]
-pub fn percent(share: f64) -> String {
-    let percent = 100.0 * share;
-    if percent >= 99.95 {
-        "more than 99.9 %".to_owned()
-    } else {
-        format!("{percent:.1} %")
-    }
-}
-
 /// Odds from their power of ten, against what they are compared with: `1 to 6.9`, `below 1 to 10^6`.
 #[must_use]
 pub fn odds(log10: f64) -> String {
@@ -165,51 +154,6 @@ pub fn odds(log10: f64) -> String {
         power if power < -0.05 => format!("{} to 1", significant(10f64.powf(-power), 2)),
         power => format!("1 to {}", significant(10f64.powf(power), 2)),
     }
-}
-
-/// `a`, `a and b`, `a, b and c`.
-#[must_use]
-pub fn listed(words: &[String]) -> String {
-    match words {
-        [] => String::new(),
-        [only] => only.clone(),
-        [all @ .., last] => format!("{} and {last}", all.join(", ")),
-    }
-}
-
-/// A text in lines, the first one begun by `first`, the others indented.
-#[must_use]
-pub fn wrapped(first: &str, text: &str) -> String {
-    let indent = " ".repeat(first.chars().count());
-    let mut lines = String::from(first);
-    let mut length = first.chars().count();
-    let mut fresh = true;
-    // A number stays with its percent sign.
-    let text = text.replace(" %", "\u{a0}%");
-    for word in text.split(' ').filter(|word| !word.is_empty()) {
-        let size = word.chars().count();
-        if !fresh && length + 1 + size > WIDTH {
-            lines.push('\n');
-            lines.push_str(&indent);
-            length = indent.len();
-            fresh = true;
-        }
-        if !fresh {
-            lines.push(' ');
-            length += 1;
-        }
-        lines.push_str(word);
-        length += size;
-        fresh = false;
-    }
-    lines.push('\n');
-    lines.replace('\u{a0}', " ")
-}
-
-/// A text that begins with a capital.
-#[must_use]
-pub fn capital(text: &str) -> String {
-    changed(text, |c| c.to_uppercase().collect())
 }
 
 /// A text that begins with a small letter.
@@ -278,13 +222,5 @@ mod tests {
             "90 N s/m (70 to 112)"
         );
         assert_eq!(with_interval(1.0, [1.0, 1.0], ""), "1.00 (1.00 to 1.00)");
-    }
-
-    #[test]
-    fn lines_end_before_the_margin() {
-        let text = wrapped("- ", &"word ".repeat(60));
-        let lines: Vec<&str> = text.lines().collect();
-        assert!(lines.len() > 2 && lines.iter().all(|line| line.len() <= WIDTH));
-        assert!(lines[1].starts_with("  word") && lines[0].starts_with("- word"));
     }
 }

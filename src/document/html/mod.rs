@@ -64,7 +64,7 @@ pub fn html(page: &Document<'_>) -> String {
                     @for text in &page.lead { p.lead { (text) } }
                     @if !page.facts.is_empty() {
                         dl.facts { @for fact in &page.facts {
-                            div { dt { (fact.name) } dd { (fact.value) @if !fact.remark.is_empty() { small { (fact.remark) } } } }
+                            div { dt { (fact.name) } dd data-key=[key(&fact.value)] { (fact.value.words()) @if !fact.remark.is_empty() { small { (fact.remark) } } } }
                         } }
                     }
                     @if page.sections.len() > 1 { nav aria-label="Contents" { @for section in &page.sections {
@@ -127,9 +127,10 @@ fn block(block_of: &Block<'_>, budget: &Budget) -> Markup {
             Block::Panel(of) => (chart(of, budget)),
             Block::Strip(of) if of.rows.iter().all(|(_, spans)| spans.is_empty()) => p.hint { "At no time." },
             Block::Strip(of) => (strip(of)),
+            Block::Statement(text, rests_on) => p { (bound(text)) small.rests { (rests_on) } },
             Block::Lines(text) => pre { (text) },
             // Drawn by src/figure, whose texts are escaped.
-            Block::Picture(svg) => div.picture { (PreEscaped(svg)) },
+            Block::Picture(words, svg) => div.picture role="img" aria-label=(words) { (PreEscaped(svg)) },
             Block::Sketches(all) => (sketches(all)),
             Block::InSpace(drawing, instead) => div.space {
                 (sketches(instead))
@@ -186,16 +187,25 @@ fn chart(panel: &Panel<'_>, budget: &Budget) -> Markup {
     }
 }
 
+/// Key of the file that has every digit of a number.
+fn key(cell: &Cell) -> Option<&str> {
+    match cell {
+        Cell::Number(number) if !number.key.is_empty() => Some(&number.key),
+        _ => None,
+    }
+}
+
 fn table(table: &Table) -> Markup {
-    let numeric = |index: usize| table.columns[index].1.then_some("number");
+    let numeric = |index: usize| table.columns[index].is_numeric.then_some("number");
     markup! {
-        div.scroll { table {
+        div.scroll { table.sortable[table.is_sortable] {
             @if !table.caption.is_empty() { caption { (table.caption) } }
-            thead { tr { @for (name, number) in &table.columns { th class=[number.then_some("number")] scope="col" { (name) } } } }
+            thead { tr { @for (index, column) in table.columns.iter().enumerate() { th class=[numeric(index)] scope="col" { (column.name) } } } }
             tbody { @for row in &table.rows { tr { @for (index, cell) in row.iter().enumerate() {
                 @match cell {
                     Cell::Text(text) => td class=[numeric(index)] { (text) },
-                    Cell::Judged(text, good) => td class={ @if *good { "good " } @else { "bad " } (numeric(index).unwrap_or_default()) } { (text) },
+                    Cell::Number(number) => td class=[numeric(index)] data-key=[key(cell)] { (number.with_unit()) },
+                    Cell::Verdict(text, good) => td class={ @if *good { "good " } @else { "bad " } (numeric(index).unwrap_or_default()) } { (text) },
                     Cell::Hash(text) => td.hash { (text) },
                     Cell::Interval(ends) => td { (interval(*ends)) },
                 }
@@ -249,7 +259,7 @@ fn anchor(title: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::{Panel, Role, Series, Stroke};
+    use crate::document::{Column, Panel, Role, Series, Stroke};
 
     #[test]
     fn where_nothing_happened_stands_a_line() {
@@ -269,7 +279,7 @@ mod tests {
         let still = chart(vec![0.0, -0.0]);
         assert!(still.contains("<b>Seals</b>: 0 throughout.") && !still.contains("<figure"));
         assert!(chart(vec![0.0, 1e-9]).contains("<figure"));
-        let table = Table::new("Changes.", &["day"], Vec::new());
+        let table = Table::new("Changes.", vec![Column::of_words("day")], Vec::new());
         let text = html(&Document {
             sections: vec![Section::new("All", vec![Block::Table(table)])],
             ..Document::default()

@@ -3,9 +3,7 @@
 use crate::listed::listed;
 use serde::{Deserialize, Serialize};
 
-use super::super::words::wrapped;
-
-/// An account: what account.txt says, and a page.
+/// An account: the sentences of a diagnosis, which its document arranges.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Account {
     /// Its conclusion.
@@ -110,19 +108,5 @@ impl Account {
     #[must_use]
     pub fn section(&self, kind: SectionKind) -> Option<&AccountSection> {
         self.sections.iter().find(|section| section.kind == kind)
-    }
-
-    /// As text, under the name of the case.
-    #[must_use]
-    pub fn text(&self, case: &str) -> String {
-        let mut text = format!("{case}: {}\n", self.headline);
-        for section in &self.sections {
-            text.push_str(&format!("\n{}\n", section.title));
-            for paragraph in &section.paragraphs {
-                text.push_str(&wrapped("  ", paragraph));
-            }
-            text.push_str(section.table.as_deref().unwrap_or_default());
-        }
-        text
     }
 }

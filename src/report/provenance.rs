@@ -1,16 +1,10 @@
 //! The part of a page that says where all comes from.
 
-use crate::document::{Block, Cell, Section, Table};
+use crate::document::{Block, Cell, Column, Number, Section, Table};
 use crate::recording::provenance::{Provenance, SourceFile};
 
-/// Where a document says that it comes from.
-pub(super) fn provenance_of(document: &serde_json::Value) -> Section<'static> {
-    let known = serde_json::from_value(document["provenance"].clone());
-    provenance(&known.unwrap_or_default())
-}
-
 /// The same of a program, libraries included, and files.
-pub(in super::super) fn sources(program: &str, files: &[SourceFile]) -> Section<'static> {
+pub fn sources(program: &str, files: &[SourceFile]) -> Section<'static> {
     provenance(&Provenance {
         program: program.to_owned(),
         files: files.to_vec(),
@@ -19,7 +13,7 @@ pub(in super::super) fn sources(program: &str, files: &[SourceFile]) -> Section<
 }
 
 /// The part of a page that says where all comes from.
-pub(super) fn provenance(from: &Provenance) -> Section<'static> {
+pub fn provenance(from: &Provenance) -> Section<'static> {
     let mut made = format!("Made by {}", from.program);
     if !from.libraries.is_empty() {
         made += &format!(" with {}", from.libraries.join(", "));
@@ -31,7 +25,7 @@ pub(super) fn provenance(from: &Provenance) -> Section<'static> {
     let rows = from.files.iter().map(|file| {
         vec![
             Cell::from(file.file.clone()),
-            Cell::from(file.bytes.to_string()),
+            Cell::from(Number::bare("", None, "").written(file.bytes.to_string())),
             Cell::Hash(file.sha256.clone()),
         ]
     });
@@ -41,9 +35,14 @@ pub(super) fn provenance(from: &Provenance) -> Section<'static> {
             Block::Paragraph(made),
             Block::Table(Table::new(
                 "Files that were read",
-                &["file", "#bytes", "SHA-256"],
+                vec![
+                    Column::of_words("file"),
+                    Column::of_numbers("bytes"),
+                    Column::of_words("SHA-256"),
+                ],
                 rows.collect(),
             )),
         ],
     )
+    .appendix()
 }

@@ -1,8 +1,8 @@
 //! The page of a diagnosis.
 
-use super::charts::{balance, channel, origin, unlisted};
+use super::diagnosis_charts::{balance, channel, origin, unlisted};
+use super::diagnosis_tables::{detectable, how_well, own_numbers, paragraphs, ruled_out};
 use super::provenance::provenance;
-use super::tables::{account_paragraphs, detectable, how_well, own_numbers, ruled_out};
 use crate::diagnosis::answer::account::SectionKind;
 use crate::diagnosis::answer::details::remaining_errors;
 use crate::diagnosis::answer::estimate::Estimate;
@@ -13,7 +13,7 @@ use crate::diagnosis::answer::words::{
 use crate::diagnosis::answer::{Answer, FoundEffect, Verdict};
 use crate::diagnosis::difference::comparison::{Compared, Comparison};
 use crate::diagnosis::recordings::recorded::COLUMNS;
-use crate::document::{Block, Cell, Document, Fact, Section, Strip, Table, Tone};
+use crate::document::{Block, Cell, Column, Document, Fact, Number, Section, Strip, Table, Tone};
 use crate::effects::UNLISTED;
 use crate::effects::meaning;
 use crate::plant::CHANNELS;
@@ -32,8 +32,20 @@ const FOUND: [SectionKind; 6] = [
     SectionKind::ErrorWhileMoving,
 ];
 
-/// The page.
-pub(super) fn page<'a>(answer: &Answer, comparison: &'a Comparison) -> Document<'a> {
+/// Parts of the account that are sections of their own, with the recordings last.
+const OTHERS: [SectionKind; 7] = [
+    SectionKind::Tried,
+    SectionKind::NextExperiment,
+    SectionKind::Arm,
+    SectionKind::PathPlaces,
+    SectionKind::NotWritten,
+    SectionKind::HowToRun,
+    SectionKind::Recordings,
+];
+
+/// The document of a diagnosis: account.txt, the page, the viewer's text.
+#[must_use]
+pub fn diagnosis<'a>(answer: &Answer, comparison: &'a Comparison) -> Document<'a> {
     let details = &answer.details;
     let headline = details.account.headline.replace('_', " ");
     let sections = [
@@ -45,10 +57,12 @@ pub(super) fn page<'a>(answer: &Answer, comparison: &'a Comparison) -> Document<
         detectable(answer),
         own_numbers(answer),
         ruled_out(answer),
-        next_experiment(answer),
-        account(answer),
     ];
-    let sections = sections.into_iter().flatten();
+    let others = OTHERS.into_iter().filter_map(|kind| {
+        let blocks: Vec<Block<'a>> = paragraphs(answer, &[kind]).collect();
+        (!blocks.is_empty()).then(|| Section::new(kind.title(), blocks))
+    });
+    let sections = sections.into_iter().flatten().chain(others);
     Document {
         title: format!("Diagnosis of {}", details.case),
         verdict: format!("{}.", capital(&headline)),
@@ -61,13 +75,8 @@ pub(super) fn page<'a>(answer: &Answer, comparison: &'a Comparison) -> Document<
         facts: facts(answer),
         sections: sections.chain([provenance(&details.provenance)]).collect(),
         footer: "Made by idc, which simulates the device and its cell, and finds what physics recordings contain that the model leaves out. Zoom a chart by drawing over it, or with two fingers; a double click shows all.".to_owned(),
+        ..Document::default()
     }
-}
-
-fn next_experiment<'a>(answer: &Answer) -> Option<Section<'a>> {
-    let kind = SectionKind::NextExperiment;
-    let blocks: Vec<Block<'a>> = account_paragraphs(answer, &[kind]).collect();
-    (!blocks.is_empty()).then(|| Section::new(kind.title(), blocks))
 }
 
 /// Meaning of each effect, in words.
@@ -83,10 +92,7 @@ fn lead(answer: &Answer) -> Vec<String> {
     lead.extend(faults.map(|fault| capital(&fault.words) + "."));
     if answer.verdict == Verdict::NothingMissing {
         let left = answer.details.account.section(SectionKind::Remaining);
-        lead.extend(
-            left.into_iter()
-                .flat_map(|section| section.paragraphs.clone()),
-        );
+        lead.extend(left.into_iter().flat_map(|left| left.paragraphs.clone()));
     }
     lead
 }
@@ -97,7 +103,7 @@ fn facts(answer: &Answer) -> Vec<Fact> {
     let mut add = |name: &str, value: String, remark: String| {
         facts.push(Fact {
             name: name.to_owned(),
-            value,
+            value: value.into(),
             remark,
         });
     };
@@ -151,13 +157,14 @@ fn facts(answer: &Answer) -> Vec<Fact> {
     facts
 }
 
-fn what_is_missing<'a>(answer: &Answer) -> Option<Section<'a>> {
-    let mut blocks = Vec::new();
+/// The parameters of what was found, with their intervals on one scale.
+fn parameters<'a>(answer: &Answer) -> Option<Block<'a>> {
     let found = answer
         .effects
         .iter()
-        .flat_map(|effect| effect.parameters.iter().map(move |p| (effect, p)));
-    let known: Vec<(&FoundEffect, &(String, Estimate))> = found.collect();
+        .enumerate()
+        .flat_map(|found| found.1.parameters.iter().map(move |p| (found, p)));
+    let known: Vec<((usize, &FoundEffect), &(String, Estimate))> = found.collect();
     // Intervals relative to their values, on one scale.
     let relative = |e: &Estimate| [e.low, e.high].map(|end| (end - e.value) / e.value.abs());
     let ends = known.iter().flat_map(|(_, (_, e))| relative(e));
@@ -165,9 +172,13 @@ fn what_is_missing<'a>(answer: &Answer) -> Option<Section<'a>> {
         .filter(|e| e.is_finite())
         .fold(0.0, |most: f64, e| most.max(e.abs()));
     let widest = widest.clamp(1e-6, 1.0);
-    let rows = known.iter().map(|(effect, (name, estimate))| {
+    let rows = known.iter().map(|((index, effect), (name, estimate))| {
         let (words, unit, factor) = effect.display_name(name);
-        let number = |v: f64| Cell::from(significant(factor * v, 4));
+        let number = |key: &str, value: f64| {
+            let key = format!("effects.{index}.parameters.{name}.{key}");
+            Cell::from(Number::bare(&key, None, "").written(significant(factor * value, 4)))
+        };
+        let confidence = Number::bare(&format!("effects.{index}.confidence"), None, "");
         let [low, high] = relative(estimate);
         // Which joint is known or not; it has no interval.
         let certain = estimate.low == estimate.high;
@@ -175,14 +186,14 @@ fn what_is_missing<'a>(answer: &Answer) -> Option<Section<'a>> {
         vec![
             Cell::from(effect.name.replace('_', " ")),
             Cell::from(effect.subsystem.replace('_', " ")),
-            Cell::from(percent(effect.confidence)),
+            confidence.written(percent(effect.confidence)).into(),
             Cell::from(words),
             match certain && estimate.value.fract() == 0.0 {
                 true => Cell::from(format!("{}", estimate.value)),
-                false => number(estimate.value),
+                false => number("value", estimate.value),
             },
-            unless_certain(number(estimate.low)),
-            unless_certain(number(estimate.high)),
+            unless_certain(number("low", estimate.low)),
+            unless_certain(number("high", estimate.high)),
             Cell::from(match estimate.at_limit {
                 Some(_) => format!("{unit}, at the end of its range"),
                 None => unit,
@@ -196,35 +207,49 @@ fn what_is_missing<'a>(answer: &Answer) -> Option<Section<'a>> {
     let rows: Vec<Vec<Cell>> = rows.collect();
     if !rows.is_empty() {
         let scale = format!("{} %", significant(100.0 * widest, 2));
-        let columns = [
-            "effect",
-            "where",
-            "#probability",
-            "parameter",
-            "#value",
-            "#low",
-            "#high",
-            "unit",
-            "interval",
+        let columns = vec![
+            Column::of_words("effect"),
+            Column::of_words("where"),
+            Column::of_numbers("probability"),
+            Column::of_words("parameter"),
+            Column::of_numbers("value"),
+            Column::of_numbers("low"),
+            Column::of_numbers("high"),
+            Column::of_words("unit"),
+            Column::of_words("interval"),
         ];
         let caption = format!(
             "Intervals are those of 95 %; drawn relative to the value, from -{scale} to +{scale}."
         );
-        blocks.push(Block::Table(Table::new(&caption, &columns, rows)));
+        return Some(Block::Table(Table::new(&caption, columns, rows)));
     }
+    None
+}
+
+fn what_is_missing<'a>(answer: &Answer) -> Option<Section<'a>> {
+    let mut blocks: Vec<Block<'a>> = parameters(answer).into_iter().collect();
     for effect in &answer.effects {
         if let Some(report) = &effect.unlisted {
             blocks.push(Block::Panel(unlisted(report)));
         }
     }
-    blocks.extend(account_paragraphs(answer, &FOUND));
+    blocks.extend(paragraphs(answer, &FOUND));
+    let shape = answer.details.account.section(SectionKind::Missing);
+    let shape = shape.and_then(|section| section.table.clone());
+    if answer
+        .effects
+        .iter()
+        .any(|effect| effect.unlisted.is_some())
+    {
+        blocks.extend(shape.map(Block::Lines));
+    }
     (!blocks.is_empty()).then(|| Section::new("What is missing", blocks))
 }
 
 /// Strips of the times in which the effects show.
 fn where_it_shows<'a>(answer: &Answer, comparison: &Comparison) -> Option<Section<'a>> {
     let mut blocks: Vec<Block<'a>> =
-        account_paragraphs(answer, &[SectionKind::Mismatch, SectionKind::Link]).collect();
+        paragraphs(answer, &[SectionKind::Mismatch, SectionKind::Link]).collect();
     let mut subsystems: Vec<&str> = Vec::new();
     for effect in &answer.effects {
         if !subsystems.contains(&effect.subsystem.as_str()) {
@@ -304,35 +329,11 @@ fn before_and_after<'a>(answer: &Answer, comparison: &'a Comparison) -> Option<S
             blocks.push(Block::Folded(title, charts(recording)));
         }
     }
-    (blocks.len() > 1).then(|| Section::new("Before and after", blocks))
+    (blocks.len() > 1).then(|| Section::new("Before and after", blocks).appendix())
 }
 
 fn balances<'a>(comparison: &Comparison) -> Option<Section<'a>> {
     let mut blocks = vec![Block::Hint("What closes each balance along the measured motion, against the variable that says most about it: a law shows as a curve, what is explained lies flat.".to_owned())];
     blocks.extend(comparison.balances.iter().map(|b| Block::Panel(balance(b))));
-    (blocks.len() > 1).then(|| Section::new("What each link lacks", blocks))
-}
-
-/// All that the account says, folded away.
-fn account<'a>(answer: &Answer) -> Option<Section<'a>> {
-    let text = answer.details.account.text(&answer.details.case);
-    let mut blocks: Vec<Block<'a>> =
-        account_paragraphs(answer, &[SectionKind::Recordings]).collect();
-    for kind in [
-        SectionKind::Arm,
-        SectionKind::PathPlaces,
-        SectionKind::NotWritten,
-        SectionKind::HowToRun,
-    ] {
-        let paragraphs: Vec<Block<'a>> = account_paragraphs(answer, &[kind]).collect();
-        if !paragraphs.is_empty() {
-            blocks.push(Block::Heading(kind.title().to_owned()));
-            blocks.extend(paragraphs);
-        }
-    }
-    blocks.push(Block::Folded(
-        "account.txt".to_owned(),
-        vec![Block::Lines(text)],
-    ));
-    Some(Section::new("The account", blocks))
+    (blocks.len() > 1).then(|| Section::new("What each link lacks", blocks).appendix())
 }

@@ -7,7 +7,7 @@ use crate::diagnosis::answer::details::{
 };
 use crate::diagnosis::answer::estimate::Limit;
 use crate::diagnosis::answer::words::{display_name, odds, of_column, percent, reference_noise};
-use crate::document::{Block, Cell, Section, Table};
+use crate::document::{Block, Cell, Column, Number, Section, Table};
 use crate::quantity::{change, significant};
 
 pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
@@ -24,28 +24,30 @@ pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
         SectionKind::UnseenRun,
         SectionKind::Runs,
     ];
-    blocks.extend(account_paragraphs(answer, &kinds));
+    blocks.extend(paragraphs(answer, &kinds));
     (!blocks.is_empty()).then(|| Section::new("How well it fits", blocks))
 }
 
 /// Departure of each channel of each recording, in multiples of the reference noise.
 fn misfit(misfit: &[ChannelMisfit], reference_noise: &str) -> Option<Table> {
-    let row = |m: &ChannelMisfit| {
+    let row = |(index, m): (usize, &ChannelMisfit)| {
         let (words, unit, factor) = of_column(&m.channel);
-        let sigmas = |v: f64| Cell::from(significant(v, 3));
+        let number = |key: &str, value: f64, unit: &str| {
+            let key = format!("misfit.{index}.{key}");
+            let number = Number::new(&key, None, unit);
+            Cell::from(number.written(significant(value, 3)))
+        };
+        let sigmas = |key: &str, value: f64| number(key, value, "");
         vec![
             Cell::from(m.recording.clone()),
             Cell::from(words),
             Cell::from(m.samples.to_string()),
-            Cell::from(format!("{} {unit}", significant(factor * m.nominal_rms, 3))),
-            Cell::from(format!(
-                "{} {unit}",
-                significant(factor * m.improved_rms, 3)
-            )),
-            sigmas(m.nominal_sigmas),
-            sigmas(m.tolerated_sigmas),
-            sigmas(m.improved_sigmas),
-            m.left_out_sigmas.map_or(Cell::from("–"), sigmas),
+            number("believed_rms", factor * m.nominal_rms, unit),
+            number("improved_rms", factor * m.improved_rms, unit),
+            sigmas("believed_sigmas", m.nominal_sigmas),
+            sigmas("tolerated_sigmas", m.tolerated_sigmas),
+            sigmas("improved_sigmas", m.improved_sigmas),
+            (m.left_out_sigmas).map_or(Cell::from("–"), |value| sigmas("left_out_sigmas", value)),
         ]
     };
     (!misfit.is_empty()).then(|| {
@@ -54,34 +56,28 @@ fn misfit(misfit: &[ChannelMisfit], reference_noise: &str) -> Option<Table> {
         );
         Table::new(
             &caption,
-            &[
-                "recording",
-                "channel",
-                "#readings",
-                "#nominal",
-                "#improved",
-                "#nominal, σ",
-                "#within tolerances, σ",
-                "#improved, σ",
-                "#not fitted to, σ",
-            ],
-            misfit.iter().map(row).collect(),
+            vec![Column::of_words("recording"), Column::of_words("channel"), Column::of_numbers("readings"), Column::of_numbers("nominal"), Column::of_numbers("improved"), Column::of_numbers("nominal, σ"), Column::of_numbers("within tolerances, σ"), Column::of_numbers("improved, σ"), Column::of_numbers("not fitted to, σ")],
+            misfit.iter().enumerate().map(row).collect(),
         )
     })
 }
 
 /// Errors on what was not fitted to.
 fn prediction(errors: &[PredictionError], reference_noise: &str) -> Option<Table> {
-    let row = |e: &PredictionError| {
+    let row = |(index, e): (usize, &PredictionError)| {
         let (words, unit, factor) = of_column(&e.channel);
-        let number = |v: f64| Cell::from(format!("{} {unit}", significant(factor * v, 3)));
+        let number = |key: &str, value: f64| {
+            let key = format!("prediction.{index}.{key}");
+            let number = Number::new(&key, None, unit);
+            Cell::from(number.written(significant(factor * value, 3)))
+        };
         vec![
             Cell::from(e.recording.clone()),
             Cell::from(words),
-            number(e.nominal),
-            number(e.before),
-            number(e.after),
-            e.noise.map_or(Cell::from("–"), number),
+            number("believed", e.nominal),
+            number("before", e.before),
+            number("after", e.after),
+            (e.noise).map_or(Cell::from("–"), |noise| number("noise", noise)),
             e.after_sigmas.map_or(Cell::from("–"), |sigmas| {
                 Cell::from(significant(sigmas, 3))
             }),
@@ -90,16 +86,8 @@ fn prediction(errors: &[PredictionError], reference_noise: &str) -> Option<Table
     (!errors.is_empty()).then(|| {
         Table::new(
             "Root mean square of the errors on what was not fitted to; σ: the robust one in multiples of the last but one column.",
-            &[
-                "recording",
-                "channel",
-                "#nominal",
-                "#within tolerances",
-                "#improved",
-                &format!("#{reference_noise}"),
-                "#improved, σ",
-            ],
-            errors.iter().map(row).collect(),
+            vec![Column::of_words("recording"), Column::of_words("channel"), Column::of_numbers("nominal"), Column::of_numbers("within tolerances"), Column::of_numbers("improved"), Column::of_numbers(format!("{reference_noise}")), Column::of_numbers("improved, σ")],
+            errors.iter().enumerate().map(row).collect(),
         )
     })
 }
@@ -116,7 +104,7 @@ pub(super) fn detectable<'a>(answer: &Answer) -> Option<Section<'a>> {
     (!all.is_empty()).then(|| {
         let table = Table::new(
             "The smallest effects that these recordings would have shown, each alone and nine times in ten, if not always by its name.",
-            &["effect", "numbers"],
+            vec![Column::of_words("effect"), Column::of_words("numbers")],
             all.iter().map(row).collect(),
         );
         Section::new("What would have shown", vec![Block::Table(table)])
@@ -125,45 +113,51 @@ pub(super) fn detectable<'a>(answer: &Answer) -> Option<Section<'a>> {
 
 pub(super) fn own_numbers<'a>(answer: &Answer) -> Option<Section<'a>> {
     let tolerated = &answer.details.tolerated;
-    let row = |number: &ToleratedNumber| {
+    let row = |(index, number): (usize, &ToleratedNumber)| {
+        let shown = |key: &str, value: f64| {
+            let key = format!("tolerated.{index}.{key}");
+            Cell::from(Number::bare(&key, None, "").written(significant(value, 4)))
+        };
         let (words, unit, factor) = display_name(&number.key);
         let found = number.found;
         let shift = 100.0 * (found.value / number.nominal - 1.0);
         vec![
             Cell::from(words),
-            Cell::from(significant(factor * number.nominal, 4)),
-            Cell::from(significant(factor * found.value, 4)),
-            Cell::from(significant(factor * found.low, 4)),
-            Cell::from(significant(factor * found.high, 4)),
+            shown("believed", factor * number.nominal),
+            shown("found.value", factor * found.value),
+            shown("found.low", factor * found.low),
+            shown("found.high", factor * found.high),
             Cell::from(unit),
             Cell::from(match shift.is_finite() {
                 true => change(shift),
                 false => String::new(),
             }),
             match found.at_limit {
-                Some(Limit::Lower) => Cell::Judged("lower end".to_owned(), false),
-                Some(Limit::Upper) => Cell::Judged("upper end".to_owned(), false),
+                Some(Limit::Lower) => Cell::Verdict("lower end".to_owned(), false),
+                Some(Limit::Upper) => Cell::Verdict("upper end".to_owned(), false),
                 None => Cell::from(""),
             },
         ]
     };
-    let rows: Vec<Vec<Cell>> = tolerated.iter().map(row).collect();
+    let rows: Vec<Vec<Cell>> = tolerated.iter().enumerate().map(row).collect();
     let table = Table::new(
         "The rig file's own numbers, moved within their tolerances.",
-        &[
-            "number",
-            "#nominal",
-            "#found",
-            "#low",
-            "#high",
-            "unit",
-            "#change",
-            "at a limit",
+        vec![
+            Column::of_words("number"),
+            Column::of_numbers("nominal"),
+            Column::of_numbers("found"),
+            Column::of_numbers("low"),
+            Column::of_numbers("high"),
+            Column::of_words("unit"),
+            Column::of_numbers("change"),
+            Column::of_words("at a limit"),
         ],
         rows,
     );
-    (!tolerated.is_empty())
-        .then(|| Section::new("The rig's own numbers", vec![Block::Table(table)]))
+    let words = paragraphs(answer, &[SectionKind::OwnNumbers]);
+    let blocks = words.chain((!tolerated.is_empty()).then_some(Block::Table(table)));
+    let blocks: Vec<Block<'a>> = blocks.collect();
+    (!blocks.is_empty()).then(|| Section::new("The rig's own numbers", blocks))
 }
 
 pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<Section<'a>> {
@@ -178,7 +172,7 @@ pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<Section<'a>> {
     };
     let row = |other: &Considered| {
         let against = match other.log10_odds {
-            power if other.is_close() => Cell::Judged(odds(power), false),
+            power if other.is_close() => Cell::Verdict(odds(power), false),
             power => Cell::from(odds(power)),
         };
         let judged = match (other.is_close(), other.is_ruled_out()) {
@@ -197,7 +191,7 @@ pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<Section<'a>> {
     if !details.considered.is_empty() {
         blocks.push(Block::Table(Table::new(
             "Other explanations, against the one given. Ruled out: fitted in full, at odds below 1 to 100; fell behind: the same by a rough fit, with the piston held to its measured motion, where a law that acts on the motion alone can seem to explain more than it does.",
-            &["explanation", "verdict", "#odds", "#of the mismatch explained", "fitted"],
+            vec![Column::of_words("explanation"), Column::of_words("verdict"), Column::of_numbers("odds"), Column::of_numbers("of the mismatch explained"), Column::of_words("fitted")],
             details.considered.iter().map(row).collect(),
         )));
     }
@@ -213,16 +207,19 @@ pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<Section<'a>> {
     if !details.ruled_out.is_empty() {
         blocks.push(Block::Table(Table::new(
             "Variants of the answer, fitted anew: without one of its effects, or with another law in its place.",
-            &["explanation", "#leaves, RMS"],
+            vec![Column::of_words("explanation"), Column::of_numbers("leaves, RMS")],
             details.ruled_out.iter().map(row).collect(),
         )));
     }
-    blocks.extend(account_paragraphs(answer, &[SectionKind::Ambiguous]));
+    blocks.extend(paragraphs(
+        answer,
+        &[SectionKind::RuledOut, SectionKind::Ambiguous],
+    ));
     (!blocks.is_empty()).then(|| Section::new("Other explanations", blocks))
 }
 
 /// What the account says of these, a paragraph each.
-pub(super) fn account_paragraphs<'a>(
+pub(super) fn paragraphs<'a>(
     answer: &Answer,
     kinds: &[SectionKind],
 ) -> impl Iterator<Item = Block<'a>> {

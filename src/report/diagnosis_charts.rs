@@ -111,7 +111,7 @@ pub(super) fn channel<'a>(
 }
 
 /// A variable for people: words, unit and what a value in SI is multiplied by.
-pub(in crate::app) fn variable(name: &str) -> (&str, &'static str, f64) {
+pub fn variable(name: &str) -> (&str, &'static str, f64) {
     match name {
         "time" => ("time", "s", 1.0),
         "stroke_m" => ("stroke", "mm", 1e3),
@@ -131,7 +131,7 @@ pub(in crate::app) fn variable(name: &str) -> (&str, &'static str, f64) {
 }
 
 /// Where nearly all values lie, with some room; none where there are none. At an impact a few are ten times as large.
-pub(in crate::app) fn robust_range(values: &[f64]) -> Option<[f64; 2]> {
+pub fn robust_range(values: &[f64]) -> Option<[f64; 2]> {
     const BEYOND: f64 = 0.01;
     const ROOM: f64 = 0.35;
     let finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
@@ -142,7 +142,7 @@ pub(in crate::app) fn robust_range(values: &[f64]) -> Option<[f64; 2]> {
 }
 
 /// Residual of a link, in words.
-pub(in crate::app) fn lacking(balance: &Balance) -> &'static str {
+pub fn lacking(balance: &Balance) -> &'static str {
     match balance.link.as_str() {
         "regulator" => "pressure at the regulator's outlet",
         "piston" => "force on the piston",

@@ -2,13 +2,12 @@
 
 use std::borrow::Cow;
 
-use serde_json::Value;
-
 use crate::document::{Band, Block, Horizontal, Marker, Panel, Role, Section, Series, Stroke};
 use crate::recording::csv::EdgeProfile;
+use crate::run::RunResult;
 
 /// Chamfer's leg with its tolerance, and the burr before and after, along the edge.
-pub(super) fn finished_edge<'a>(profile: &EdgeProfile, document: &Value) -> Section<'a> {
+pub fn finished_edge<'a>(profile: &EdgeProfile, result: &RunResult) -> Section<'a> {
     let millimetres = |values: &[f64]| -> Vec<f64> { values.iter().map(|v| 1e3 * v).collect() };
     let places = millimetres(&profile.place);
     let series = |label: &str, values: &[f64], role, stroke| Series {
@@ -19,7 +18,7 @@ pub(super) fn finished_edge<'a>(profile: &EdgeProfile, document: &Value) -> Sect
         stroke,
         stepwise: false,
     };
-    let ends = ends(&places, document["summary"]["ends_length_mm"].as_f64());
+    let ends = ends(&places, result.metric("ends_length_mm"));
     let chart = |title: &str, label: &str, series, bands, within| {
         Block::Panel(Panel {
             within,
@@ -33,16 +32,17 @@ pub(super) fn finished_edge<'a>(profile: &EdgeProfile, document: &Value) -> Sect
             ..Panel::default()
         })
     };
-    let chamfer = &document["chamfer"];
-    let bound = |key: &str| chamfer[key].as_f64();
-    let band = bound("leg_max_mm").map(|high| Band {
+    let limits = result
+        .chamfer
+        .and_then(|limits| Some([limits.leg_min_mm, limits.leg_max_mm?]));
+    let band = limits.map(|[from, to]| Band {
         label: "tolerance".to_owned(),
-        from: bound("leg_min_mm").unwrap_or(0.0),
-        to: high,
+        from,
+        to,
     });
     // From nothing on, with the whole tolerance.
     let most = profile.chamfer_leg.iter().map(|leg| 1e3 * leg);
-    let most = most.chain(bound("leg_max_mm")).fold(0.0, f64::max);
+    let most = most.chain(limits.map(|[_, high]| high)).fold(0.0, f64::max);
     let leg = series("leg", &profile.chamfer_leg, Role::Force, Stroke::Plain);
     let mut blocks = vec![chart(
         "Leg of the chamfer",
@@ -70,11 +70,11 @@ pub(super) fn finished_edge<'a>(profile: &EdgeProfile, document: &Value) -> Sect
         ));
     }
     if !ends.is_empty() {
-        let told = "Between the two lines the tool has passed with its whole contact length; the numbers of the ends are of what lies outside them.";
-        blocks.push(Block::Hint(told.to_owned()));
+        let words = "Between the two lines the tool has passed with its whole contact length; the numbers of the ends are of what lies outside them.";
+        blocks.push(Block::Hint(words.to_owned()));
     }
-    let told = "The burr comes off first, from its tip, then the edge is chamfered. A secondary burr, pushed over by the tool, is not modelled.";
-    blocks.push(Block::Hint(told.to_owned()));
+    let words = "The burr comes off first, from its tip, then the edge is chamfered. A secondary burr, pushed over by the tool, is not modelled.";
+    blocks.push(Block::Hint(words.to_owned()));
     Section::new("Finished edge", blocks)
 }
 
