@@ -37,10 +37,10 @@ pub fn assumed(values: &[AssumedValue], file: &str) -> Option<Section<'static>> 
     });
     let rests: Vec<String> = rests.collect();
     let text = format!(
-        "These numbers rest on values that nobody has measured in public (judged): {}. {file} lists them; measure your own.",
+        "These numbers rest on values that nobody has measured in public (assumed): {}. {file} lists them; measure your own.",
         rests.join("; ")
     );
-    Some(Section::new("Judged values", vec![Block::Paragraph(text)]).appendix())
+    Some(Section::new("Assumed values", vec![Block::Paragraph(text)]).appendix())
 }
 
 #[cfg(test)]
@@ -67,7 +67,7 @@ mod tests {
         };
         assert_eq!(
             text,
-            "These numbers rest on values that nobody has measured in public (judged): leg on removal.a and removal.c (default); power on removal.b (default); force on 2 values that the device model marks as judged. summary.json lists them; measure your own."
+            "These numbers rest on values that nobody has measured in public (assumed): leg on removal.a and removal.c (default); power on removal.b (default); force on 2 values that the device model marks as judged. summary.json lists them; measure your own."
         );
         assert!(assumed(&[], "summary.json").is_none());
     }

@@ -175,14 +175,14 @@ pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<Section<'a>> {
             power if other.is_close() => Cell::Verdict(odds(power), false),
             power => Cell::from(odds(power)),
         };
-        let judged = match (other.is_close(), other.is_ruled_out()) {
+        let verdict = match (other.is_close(), other.is_ruled_out()) {
             (true, _) => "not ruled out",
             (_, true) => "ruled out",
             _ => "fell behind",
         };
         vec![
             Cell::from(names(&other.effects)),
-            Cell::from(judged),
+            Cell::from(verdict),
             against,
             Cell::from(other.explained_share.map_or("–".to_owned(), percent)),
             Cell::from(if other.in_full { "in full" } else { "roughly" }),

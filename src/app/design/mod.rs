@@ -48,7 +48,7 @@ impl PreparedStudy {
         file: &Path,
         evaluations: Option<u32>,
         folder: &Path,
-        standing: OverwritePolicy,
+        policy: OverwritePolicy,
     ) -> Result<Self, AppError> {
         let mut study = design::load(file)?;
         if let Some(evaluations) = evaluations {
@@ -60,7 +60,7 @@ impl PreparedStudy {
         Ok(Self {
             provenance: sources(&study, &scenarios)?,
             assumed: assumed(&study, &scenarios),
-            folder: OutputFolder::prepare(folder, &NAMES, standing)?,
+            folder: OutputFolder::prepare(folder, &NAMES, policy)?,
             study,
             evaluator,
         })

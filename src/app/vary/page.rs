@@ -112,7 +112,7 @@ fn drivers(swept: &Swept) -> Section<'static> {
         Column::of_words("driven by"),
         Column::of_numbers("share [%]"),
         Column::of_numbers("interval [%]"),
-        Column::of_words(""),
+        Column::of_words("interval drawn"),
         Column::of_numbers("by chance [%]"),
         Column::of_numbers("rank correlation"),
     ];

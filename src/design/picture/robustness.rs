@@ -77,15 +77,15 @@ fn heading(root: &Area<'_>, result: &StudyResult, robustness: &Robustness) -> Dr
 
 /// One quantity: the share of the draws that lies at or below each value.
 fn panel(area: &Area<'_>, result: &StudyResult, robustness: &Robustness, place: usize) -> Drawn {
-    let told = &robustness.quantiles[place];
+    let own = &robustness.quantiles[place];
     let mut values: Vec<(f64, bool)> = (robustness.draws.iter())
         .filter_map(|draw| Some((draw.metrics[place]?, draw.kept)))
         .collect();
     values.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let bounds: Vec<(f64, bool)> = limits_of(result, &told.metric)
+    let bounds: Vec<(f64, bool)> = limits_of(result, &own.metric)
         .map(|limit| (limit.bound, limit.side == Side::Max))
         .collect();
-    let (low, high) = extent(values.iter().map(|v| v.0).chain([told.chosen]));
+    let (low, high) = extent(values.iter().map(|v| v.0).chain([own.chosen]));
     // A bound that is far off would press all draws into one line.
     let near = |bound: f64| (bound - low).abs().min((bound - high).abs()) <= 2.0 * (high - low);
     let seen = bounds
@@ -117,7 +117,7 @@ fn panel(area: &Area<'_>, result: &StudyResult, robustness: &Robustness, place: 
         .y_labels(5)
         .label_style((FONT, TEXT).into_font().color(&DARK))
         .axis_desc_style((FONT, TEXT).into_font().color(&DARK))
-        .x_desc(axis(&told.metric))
+        .x_desc(axis(&own.metric))
         .y_desc("draws at or below [%]")
         .x_label_formatter(&|value| tick(*value, across))
         .y_label_formatter(&|value| format!("{value:.0}"))
@@ -132,7 +132,7 @@ fn panel(area: &Area<'_>, result: &StudyResult, robustness: &Robustness, place: 
         let corners = [(ends.0, 0.0), (ends.1, 100.0)];
         chart.draw_series([Rectangle::new(corners, LIMIT.mix(0.25).filled())])?;
     }
-    let chosen = vec![(told.chosen, 0.0), (told.chosen, 100.0)];
+    let chosen = vec![(own.chosen, 0.0), (own.chosen, 100.0)];
     chart.draw_series([PathElement::new(chosen, DARK.stroke_width(2 * PX as u32))])?;
     let all = robustness.runs as f64;
     let dots = values.iter().enumerate().map(|(rank, (value, kept))| {
