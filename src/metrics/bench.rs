@@ -41,36 +41,26 @@ metrics! {
     /// Every number of a command, in the order of summary.json.
     LEVEL_METRICS;
     always {
-        start_s: f64 = "s", "given at", "since the start",
-            "When the command was given.",
-            Step [column("at")];
-        set_pressure_bar_gauge: f64 = "bar", "set pressure", "at the end of the level",
-            "Set pressure at the end of the level.",
-            Step [column("set")];
-        regulator_pressure_bar_gauge: f64 = "bar", "outlet pressure", "steady mean",
-            "Pressure at the regulator's outlet, mean over the steady part.",
-            Step [column("outlet")];
-        regulator_delay_s: Option<f64> = "s", "regulator's delay", "command to 63 % of its change",
-            "Command until the outlet has made 63.2 % of its change.",
-            Step [column("delay")];
-        force_mean_n: Option<f64> = "N", "mean", "steady mean",
-            "Mean contact force over the steady part; undefined without contact.",
-            Step [of("force"), column("force")];
-        force_standard_deviation_n: Option<f64> = "N", "standard deviation", "about the steady mean",
-            "Its standard deviation there.",
-            Step [of("force")];
-        measured_force_mean_n: Option<f64> = "N", "load cell's reading", "steady mean",
-            "Mean of the load cell's reading there, as its software gives it.",
-            Step [column("read")];
-        force_settling_time_s: Option<f64> = "s", "settling time", "command to within 5 % of the change",
-            "Command until the force stays within 5 % of its change about its steady mean; undefined once something else moves.",
-            Step [of("force"), column("settled")];
-        force_overshoot_percent: Option<f64> = "%", "overshoot", "of the change",
-            "100 * the highest force beyond the steady mean / the change.",
-            Step [of("force")];
-        stroke_mm: Option<f64> = "mm", "stroke", "steady mean",
-            "Mean stroke over the steady part.",
-            Step [column("stroke")];
+        start_s: f64 = "s", "given at", "since the start", Step [column("at")],
+            "When the command was given.";
+        set_pressure_bar_gauge: f64 = "bar", "set pressure", "at the end of the level", Step [column("set")],
+            "Set pressure at the end of the level.";
+        regulator_pressure_bar_gauge: f64 = "bar", "outlet pressure", "steady mean", Step [column("outlet")],
+            "Pressure at the regulator's outlet, mean over the steady part.";
+        regulator_delay_s: Option<f64> = "s", "regulator's delay", "command to 63 % of its change", Step [column("delay")],
+            "Command until the outlet has made 63.2 % of its change.";
+        force_mean_n: Option<f64> = "N", "mean", "steady mean", Step [of("force"), column("force")],
+            "Mean contact force over the steady part; undefined without contact.";
+        force_standard_deviation_n: Option<f64> = "N", "standard deviation", "about the steady mean", Step [of("force")],
+            "Its standard deviation there.";
+        measured_force_mean_n: Option<f64> = "N", "load cell's reading", "steady mean", Step [column("read")],
+            "Mean of the load cell's reading there, as its software gives it.";
+        force_settling_time_s: Option<f64> = "s", "settling time", "command to within 5 % of the change", Step [of("force"), column("settled")],
+            "Command until the force stays within 5 % of its change about its steady mean; undefined once something else moves.";
+        force_overshoot_percent: Option<f64> = "%", "overshoot", "of the change", Step [of("force")],
+            "100 * the highest force beyond the steady mean / the change.";
+        stroke_mm: Option<f64> = "mm", "stroke", "steady mean", Step [column("stroke")],
+            "Mean stroke over the steady part.";
     }
     sometimes {}
     always {}
@@ -83,78 +73,54 @@ metrics! {
     /// All of them, in the order of summary.json.
     BENCH_METRICS;
     always {
-        desired_force_n: Option<f64> = "N", "desired force", "mean, where forces are commanded",
-            "Mean of the desired force over the same samples as the error; undefined where pressures are commanded.",
-            Force [];
-        force_mean_n: Option<f64> = "N", "mean", "surface moving; else last level, steady",
-            "Mean of the force.",
-            Force [of("force"), fact(1), rank(1)];
-        force_rms_error_n: Option<f64> = "N", "RMS error", "about the desired force, else the mean",
-            "Root of the mean square of the error.",
-            Force [of("force")];
-        force_rms_error_percent: Option<f64> = "%", "RMS error", "of the desired force, else the mean",
-            "100 * `force_rms_error_n` / the desired force, or the mean.",
-            Force [of("force"), fact(3), rank(3)];
-        force_largest_error_percent: Option<f64> = "%", "largest error", "of the desired force, else the mean",
-            "100 * largest abs(error) / the desired force, or the mean.",
-            Force [of("force")];
-        coefficient_of_variation_percent: Option<f64> = "%", "coefficient of variation", "standard deviation / mean",
-            "100 * standard deviation / mean.",
-            Force [fact(2), rank(2)];
-        force_peak_n: Option<f64> = "N", "largest", "of the whole run",
-            "Largest force of the whole run.",
-            Peaks [of("force"), fact(6)];
-        regulator_delay_s: Option<f64> = "s", "regulator's delay", "first command to 63 % of its change",
-            "First command until the outlet has made 63.2 % of its change: dead time and time constant.",
-            Step [fact(4), rank(7)];
-        force_settling_time_s: Option<f64> = "s", "settling time", "last step with nothing else moving",
-            "Command until the force stays within 5 % of its change about the steady mean; of the last command that has a response.",
-            Step [of("force"), fact(5), rank(4)];
-        force_overshoot_percent: Option<f64> = "%", "overshoot", "the same command, of the change",
-            "100 * the highest force beyond the steady mean after the same command / the change.",
-            Step [of("force")];
-        force_slope_n_per_bar: Option<f64> = "N/bar", "force over pressure", "straight line through the levels",
-            "Slope of the least-squares line of steady force over steady outlet pressure through the levels.",
-            Step [];
-        force_linearity_percent: Option<f64> = "%", "linearity error", "largest, of the highest level's force",
-            "100 * largest distance of a level from that line / the highest level's force; needs three levels.",
-            Step [of("force")];
-        first_contact_s: Option<f64> = "s", "first contact", "since the start",
-            "First sample in contact.",
-            Touch [];
-        impact_peak_n: Option<f64> = "N", "impact peak", "first 50 ms of contact",
-            "Largest force in the first 50 ms of contact.",
-            Touch [rank(5)];
-        stroke_min_mm: Option<f64> = "mm", "smallest stroke", "since first contact, else the run",
-            "Least stroke since first contact, or of the run.",
-            Stroke [];
-        stroke_max_mm: Option<f64> = "mm", "largest stroke", "since first contact, else the run",
-            "Largest stroke since first contact, or of the run.",
-            Stroke [];
-        stroke_margin_mm: Option<f64> = "mm", "stroke margin", "least distance to either end",
-            "Least distance of these two to the ends of the stroke.",
-            Stroke [fact(7), rank(6)];
-        measured_force_error_percent: Option<f64> = "%", "load cell's error", "mean of reading over truth, less 1",
-            "100 * mean of (reading - force) / mean force, in contact.",
-            Sensors [];
-        measured_force_noise_n: Option<f64> = "N", "load cell's noise", "reading less truth, about its mean",
-            "Standard deviation of (reading - force), in contact; the filter's lag is part of it.",
-            Sensors [];
-        estimated_force_rms_error_percent: Option<f64> = "%", "estimator's RMS error", "of the mean force, in contact",
-            "100 * root mean square of (estimate - force) / mean force, in contact.",
-            Sensors [];
-        estimated_force_coverage_percent: Option<f64> = "%", "estimator's coverage", "truth inside its 95 % band, in contact",
-            "Share of samples in contact with abs(estimate - force) at most 1.96 of its recorded deviations, which is the estimator's 95 % band.",
-            Sensors [];
-        air_consumed_normal_litres: Option<f64> = "l", "air consumed", "drawn in, at 20 °C and 1 bar",
-            "Air that entered, at 20 degrees C and 1 bar (ISO 8778).",
-            Run [];
-        air_mass_balance_relative: Option<f64> = "1", "air balance, largest gap", "of the air in the device",
-            "Largest over time of abs((entered - left) - (mass - mass at the start)) / mass, with entered and left both counted from the first sample, and mass the air in both chambers. How far the simulated pneumatics create or lose air; rounding leaves some 1e-13.",
-            Run [];
-        duration_s: f64 = "s", "simulated time", "the whole run",
-            "Cycle time: simulated time from the first to the last sample, which of a job that is done are those of approach and retract.",
-            Run [];
+        desired_force_n: Option<f64> = "N", "desired force", "mean, where forces are commanded", Force [],
+            "Mean of the desired force over the same samples as the error; undefined where pressures are commanded.";
+        force_mean_n: Option<f64> = "N", "mean", "surface moving; else last level, steady", Force [of("force"), fact(1), rank(1)],
+            "Mean of the force.";
+        force_rms_error_n: Option<f64> = "N", "RMS error", "about the desired force, else the mean", Force [of("force")],
+            "Root of the mean square of the error.";
+        force_rms_error_percent: Option<f64> = "%", "RMS error", "of the desired force, else the mean", Force [of("force"), fact(3), rank(3)],
+            "100 * `force_rms_error_n` / the desired force, or the mean.";
+        force_largest_error_percent: Option<f64> = "%", "largest error", "of the desired force, else the mean", Force [of("force")],
+            "100 * largest abs(error) / the desired force, or the mean.";
+        coefficient_of_variation_percent: Option<f64> = "%", "coefficient of variation", "standard deviation / mean", Force [fact(2), rank(2)],
+            "100 * standard deviation / mean.";
+        force_peak_n: Option<f64> = "N", "largest", "of the whole run", Peaks [of("force"), fact(6)],
+            "Largest force of the whole run.";
+        regulator_delay_s: Option<f64> = "s", "regulator's delay", "first command to 63 % of its change", Step [fact(4), rank(7)],
+            "First command until the outlet has made 63.2 % of its change: dead time and time constant.";
+        force_settling_time_s: Option<f64> = "s", "settling time", "last step with nothing else moving", Step [of("force"), fact(5), rank(4)],
+            "Command until the force stays within 5 % of its change about the steady mean; of the last command that has a response.";
+        force_overshoot_percent: Option<f64> = "%", "overshoot", "the same command, of the change", Step [of("force")],
+            "100 * the highest force beyond the steady mean after the same command / the change.";
+        force_slope_n_per_bar: Option<f64> = "N/bar", "force over pressure", "straight line through the levels", Step [],
+            "Slope of the least-squares line of steady force over steady outlet pressure through the levels.";
+        force_linearity_percent: Option<f64> = "%", "linearity error", "largest, of the highest level's force", Step [of("force")],
+            "100 * largest distance of a level from that line / the highest level's force; needs three levels.";
+        first_contact_s: Option<f64> = "s", "first contact", "since the start", Touch [],
+            "First sample in contact.";
+        impact_peak_n: Option<f64> = "N", "impact peak", "first 50 ms of contact", Touch [rank(5)],
+            "Largest force in the first 50 ms of contact.";
+        stroke_min_mm: Option<f64> = "mm", "smallest stroke", "since first contact, else the run", Stroke [],
+            "Least stroke since first contact, or of the run.";
+        stroke_max_mm: Option<f64> = "mm", "largest stroke", "since first contact, else the run", Stroke [],
+            "Largest stroke since first contact, or of the run.";
+        stroke_margin_mm: Option<f64> = "mm", "stroke margin", "least distance to either end", Stroke [fact(7), rank(6)],
+            "Least distance of these two to the ends of the stroke.";
+        measured_force_error_percent: Option<f64> = "%", "load cell's error", "mean of reading over truth, less 1", Sensors [],
+            "100 * mean of (reading - force) / mean force, in contact.";
+        measured_force_noise_n: Option<f64> = "N", "load cell's noise", "reading less truth, about its mean", Sensors [],
+            "Standard deviation of (reading - force), in contact; the filter's lag is part of it.";
+        estimated_force_rms_error_percent: Option<f64> = "%", "estimator's RMS error", "of the mean force, in contact", Sensors [],
+            "100 * root mean square of (estimate - force) / mean force, in contact.";
+        estimated_force_coverage_percent: Option<f64> = "%", "estimator's coverage", "truth inside its 95 % band, in contact", Sensors [],
+            "Share of samples in contact with abs(estimate - force) at most 1.96 of its recorded deviations, which is the estimator's 95 % band.";
+        air_consumed_normal_litres: Option<f64> = "l", "air consumed", "drawn in, at 20 °C and 1 bar", Run [],
+            "Air that entered, at 20 degrees C and 1 bar (ISO 8778).";
+        air_mass_balance_relative: Option<f64> = "1", "air balance, largest gap", "of the air in the device", Run [],
+            "Largest over time of abs((entered - left) - (mass - mass at the start)) / mass, with entered and left both counted from the first sample, and mass the air in both chambers. How far the simulated pneumatics create or lose air; rounding leaves some 1e-13.";
+        duration_s: f64 = "s", "simulated time", "the whole run", Run [],
+            "Cycle time: simulated time from the first to the last sample, which of a job that is done are those of approach and retract.";
         /// Each command, in order.
         levels: Vec<LevelSummary>;
         /// Duration of the computation; differs from run to run.
@@ -164,12 +130,10 @@ metrics! {
     sometimes {}
     always {}
     also {
-        timing.wall_time_s = "s", "wall time", "of the computation",
-            "Wall-clock time of the computation, as measured by the program.",
-            Run [];
-        timing.real_time_factor = "1", "real-time factor", "simulated time / wall time",
-            "Simulated time / wall time: 10 means ten times faster than the real cell.",
-            Run [];
+        timing.wall_time_s = "s", "wall time", "of the computation", Run [],
+            "Wall-clock time of the computation, as measured by the program.";
+        timing.real_time_factor = "1", "real-time factor", "simulated time / wall time", Run [],
+            "Simulated time / wall time: 10 means ten times faster than the real cell.";
     }
 }
 

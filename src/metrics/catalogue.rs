@@ -193,16 +193,16 @@ pub(super) fn ranked<S>(
     ranked
 }
 
-/// Numbers of a summary, each declared once: its field, named as its key in summary.json, then unit, name for people, meaning in a few words, definition, and
-/// part of the report, in brackets where else it is shown and what is not as usual: methods of [`Metric`]. What is no number has a field alone.
+/// Numbers of a summary, each declared once: its field, named as its key in summary.json, then unit, name for people, meaning in a few words, part of the
+/// report, in brackets where else it is shown and what is not as usual (methods of [`Metric`]), and its definition. What is no number has a field alone.
 /// Those of the block `sometimes` stand in the file only where the run determines them; `also` are numbers of a field that holds several.
 macro_rules! metrics {
     (
         $(#[$about:meta])* $summary:ident, $(#[$all:meta])* $list:ident;
-        always { $($(#[$a:meta])* $always:ident: $at:ty $(= $au:literal, $al:literal, $am:literal, $ad:literal, $ap:ident [$($ah:ident $(($ax:expr))?),*])?;)* }
-        sometimes { $($some:ident: $st:ty = $su:literal, $sl:literal, $sm:literal, $sd:literal, $sp:ident [$($sh:ident $(($sx:expr))?),*];)* }
-        always { $($(#[$l:meta])* $last:ident: $lt:ty $(= $lu:literal, $ll:literal, $lm:literal, $ld:literal, $lp:ident [$($lh:ident $(($lx:expr))?),*])?;)* }
-        also { $($parent:ident.$also:ident = $ou:literal, $ol:literal, $om:literal, $od:literal, $op:ident [$($oh:ident $(($ox:expr))?),*];)* }
+        always { $($(#[$a:meta])* $always:ident: $at:ty $(= $au:literal, $al:literal, $am:literal, $ap:ident [$($ah:ident $(($ax:expr))?),*], $ad:literal)?;)* }
+        sometimes { $($some:ident: $st:ty = $su:literal, $sl:literal, $sm:literal, $sp:ident [$($sh:ident $(($sx:expr))?),*], $sd:literal;)* }
+        always { $($(#[$l:meta])* $last:ident: $lt:ty $(= $lu:literal, $ll:literal, $lm:literal, $lp:ident [$($lh:ident $(($lx:expr))?),*], $ld:literal)?;)* }
+        also { $($parent:ident.$also:ident = $ou:literal, $ol:literal, $om:literal, $op:ident [$($oh:ident $(($ox:expr))?),*], $od:literal;)* }
     ) => {
         $(#[$about])*
         #[derive(Debug, Clone, PartialEq, Default, serde::Serialize, serde::Deserialize)]

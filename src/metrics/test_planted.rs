@@ -10,23 +10,21 @@ metrics! {
     /// All of them.
     PLANTED;
     always {
-        planted_depth_mm: Option<f64> = "mm", "planted depth", "of a test",
-            "The depth that a test plants.",
-            Stroke [fact(1), rank(1), column("depth")];
+        planted_depth_mm: Option<f64> = "mm", "planted depth", "of a test", Stroke [fact(1), rank(1), column("depth")],
+            "The depth that a test plants.";
     }
     sometimes {
-        planted_share_percent: Option<f64> = "%", "planted share", "of a test",
-            "The share that a test plants; absent without it.",
-            Edge [];
+        planted_share_percent: Option<f64> = "%", "planted share", "of a test", Edge [],
+            "The share that a test plants; absent without it.";
     }
     always {}
     also {}
 }
 
-/// A run in which the depth is 12.345 mm.
+/// A run in which the depth is 12.5 mm.
 pub(crate) fn planted() -> Planted {
     Planted {
-        planted_depth_mm: Some(12.345),
+        planted_depth_mm: Some(12.5),
         planted_share_percent: None,
     }
 }
@@ -44,7 +42,7 @@ pub(crate) fn bounds(max: f64) -> Vec<BoundCheck> {
 #[test]
 fn it_is_in_the_file_and_can_be_bounded() {
     let file = serde_json::to_string(&planted()).unwrap();
-    assert_eq!(file, r#"{"planted_depth_mm":12.345}"#);
+    assert_eq!(file, r#"{"planted_depth_mm":12.5}"#);
     assert_eq!(serde_json::from_str::<Planted>(&file).unwrap(), planted());
     assert!(bounds(13.0)[0].kept && !bounds(12.0)[0].kept);
     let slip = Expectation {

@@ -451,3 +451,48 @@ fn from<'a>(result: &RunResult) -> Section<'a> {
     section.blocks.insert(0, Block::Paragraph(words));
     section
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::{Style, html, markdown, text};
+    use crate::metrics::test_planted::planted;
+
+    // The viewer shows the Markdown.
+    #[test]
+    fn a_number_that_is_declared_is_rendered_everywhere_without_another_line() {
+        let summary = planted();
+        let of_passes = rows_of(
+            "Passes.",
+            ["pass", "passes"],
+            std::slice::from_ref(&summary),
+        );
+        let document = |blocks, facts| Document {
+            title: "Planted".to_owned(),
+            sections: vec![Section::new("Numbers", blocks)],
+            facts,
+            ..Document::default()
+        };
+        let own = document(vec![Block::Table(rows(&summary))], Vec::new());
+        let fact = document(Vec::new(), facts_of(&summary));
+        for document in [own, fact] {
+            let page = html(&document);
+            assert!(page.contains("data-key=\"planted_depth_mm\""), "{page}");
+            for shown in [text(&document, Style::Plain), markdown(&document), page] {
+                let found = shown.contains("planted depth") && shown.contains("12.50 mm");
+                assert!(found, "{shown}");
+                assert!(
+                    !shown.contains("planted share"),
+                    "absent numbers are left out"
+                );
+            }
+        }
+        let passes = document(vec![Block::Table(of_passes)], Vec::new());
+        let page = html(&passes);
+        for shown in [text(&passes, Style::Plain), markdown(&passes), page] {
+            let plain = shown.replace('\\', "");
+            let found = plain.contains("depth [mm]") && plain.contains("12.50");
+            assert!(found, "{shown}");
+        }
+    }
+}
