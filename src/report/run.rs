@@ -323,7 +323,7 @@ fn bounds<'a>(result: &RunResult) -> Option<Section<'a>> {
         vec![
             Cell::Verdict(word.to_owned(), bound.kept),
             Cell::from(name),
-            Cell::from(value.written(told_apart(bound, unit))),
+            Cell::from(value.written(distinguishable(bound, unit))),
             Cell::from(bound.ends()),
         ]
     };
@@ -349,7 +349,7 @@ fn bounds<'a>(result: &RunResult) -> Option<Section<'a>> {
 }
 
 /// A value with enough digits to tell it from its bounds.
-fn told_apart(bound: &BoundCheck, unit: &str) -> String {
+fn distinguishable(bound: &BoundCheck, unit: &str) -> String {
     let Some(value) = bound.value else {
         return UNKNOWN.to_owned();
     };

@@ -19,7 +19,7 @@ const FILES: [(&str, &str); 2] = [
     ("design.json", "all of this result, for programs"),
 ];
 /// A step that would lower the objective by less is no hint [%].
-const NOT_ENDED: f64 = 0.5;
+const IMPROVING_PERCENT: f64 = 0.5;
 
 /// Pictures of a study as SVG.
 #[derive(Debug, Clone, Copy, Default)]
@@ -34,7 +34,7 @@ pub struct StudyPictures<'a> {
 #[must_use]
 pub fn study(study: &StudyDocument, pictures: StudyPictures<'_>) -> Document<'static> {
     let result = &study.result;
-    let steps_left = result.improving_steps(NOT_ENDED).next();
+    let steps_left = result.improving_steps(IMPROVING_PERCENT).next();
     let hint = steps_left.map(|step| {
         let (name, _) = display_name(&step.variable);
         format!(

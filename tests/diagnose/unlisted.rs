@@ -78,7 +78,7 @@ fn a_planted_snag_is_answered_as_unlisted_with_its_shape() {
     let account = std::fs::read_to_string(bench.path("out/account.txt")).unwrap();
     let words = account.split_whitespace().collect::<Vec<_>>().join(" ");
     for said in [
-        "missing: physics that no known effect explains",
+        "Missing: physics that no known effect explains",
         "a force on the piston that depends on the stroke",
         "drawn in unlisted.svg",
     ] {

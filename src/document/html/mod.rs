@@ -262,7 +262,7 @@ mod tests {
     use crate::document::{Column, Panel, Role, Series, Stroke};
 
     #[test]
-    fn where_nothing_happened_stands_a_line() {
+    fn where_nothing_happened_is_one_line() {
         let chart = |values: Vec<f64>| {
             let times = vec![0.0, 1.0];
             let series = Series::new("force", times, values, Role::Force, Stroke::Plain);
