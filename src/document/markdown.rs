@@ -1,6 +1,6 @@
 //! A document as Markdown, for the text panel of a recording and for repositories.
 
-use super::{Block, Cell, Document, Strip, Table, Tone, on_the_page};
+use super::{Block, Cell, Document, Table, Tone, on_the_page};
 
 /// The document as Markdown.
 #[must_use]
@@ -46,10 +46,10 @@ fn block(block: &Block<'_>) -> String {
         Block::Paragraph(text) => format!("\n{}\n", escape(text)),
         Block::Statement(text, rests_on) => format!("\n{} *{}*\n", escape(text), escape(rests_on)),
         Block::Table(of) => table(of),
-        Block::Strip(of) => strip(of),
         Block::Lines(lines) => format!("\n```\n{}\n```\n", lines.trim_end()),
         Block::File(name, words) => format!("\n[{}]({name}): {}\n", escape(name), escape(words)),
         Block::Hint(_)
+        | Block::Strip(_)
         | Block::Panel(_)
         | Block::Picture(..)
         | Block::Sketches(_)
@@ -86,18 +86,6 @@ fn table(table: &Table) -> String {
 
 fn row(cells: &[String]) -> String {
     format!("| {} |\n", cells.join(" | "))
-}
-
-fn strip(strip: &Strip) -> String {
-    let line = |(name, spans): &(String, Vec<[f64; 2]>)| {
-        let spans: Vec<String> = spans
-            .iter()
-            .map(|[from, to]| format!("{from:.2} to {to:.2} s"))
-            .collect();
-        format!("\n- {}: {}", escape(name), spans.join(", "))
-    };
-    let lines: String = strip.rows.iter().map(line).collect();
-    format!("{lines}\n")
 }
 
 /// Text in which nothing is taken for Markdown or for the end of a cell.

@@ -152,6 +152,8 @@ pub enum Cell {
 /// Times in which something is so.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Strip {
+    /// What it is of.
+    pub title: String,
     /// First and last time [s].
     pub span: [f64; 2],
     /// A name each, and its times [s].
@@ -273,6 +275,7 @@ fn drawn(block: &Block<'_>) -> Vec<String> {
     };
     match block {
         Block::Panel(panel) => vec![panel.title.clone()],
+        Block::Strip(strip) => vec![format!("times in {}", strip.title)],
         Block::Picture(words, _) => vec![words.clone()],
         Block::Sketches(all) => named(all),
         Block::InSpace(drawing, _) => vec![first_sentence(&drawing.name)],

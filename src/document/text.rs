@@ -1,14 +1,18 @@
 //! A document for a terminal, or a file of plain text: no line longer than [`WIDTH`].
 
 use comfy_table::{
-    Attribute, Cell as TextCell, CellAlignment, Color, ContentArrangement, Table as TextTable,
-    presets::NOTHING,
+    Attribute, Cell as TextCell, CellAlignment, Color, ColumnConstraint, ContentArrangement,
+    Table as TextTable, presets::NOTHING,
 };
 
-use super::{Block, Cell, Column, Document, Section, Strip, Table, Tone, on_the_page, printable};
+use textwrap::core::display_width;
+
+use super::{Block, Cell, Column, Document, Section, Table, Tone, on_the_page, printable};
 
 /// Columns of a terminal.
 pub const WIDTH: usize = 80;
+/// Beside the text of a cell.
+const GAP: usize = 2;
 /// Before the blocks of a section.
 const INDENT: &str = "  ";
 
@@ -76,10 +80,14 @@ pub fn text(document: &Document<'_>, style: Style) -> String {
 /// A paragraph in lines of at most [`WIDTH`] columns, the first with something before it and the others indented as far.
 #[must_use]
 pub fn wrapped(before: &str, paragraph: &str) -> String {
-    let indent = " ".repeat(textwrap::core::display_width(before));
+    hanging([before, &" ".repeat(display_width(before))], paragraph)
+}
+
+/// A paragraph with something before its first line and before the others.
+fn hanging([first, others]: [&str; 2], paragraph: &str) -> String {
     let options = textwrap::Options::new(WIDTH)
-        .initial_indent(before)
-        .subsequent_indent(&indent)
+        .initial_indent(first)
+        .subsequent_indent(others)
         .break_words(false)
         .word_splitter(textwrap::WordSplitter::NoHyphenation);
     // A number stays with its percent sign.
@@ -110,13 +118,13 @@ fn block(block: &Block<'_>, style: Style) -> String {
                 + &style.paint("2", &wrapped("    ", &printable(rests_on)))
         }
         Block::Table(of) => table(of, style),
-        Block::Strip(of) => strip(of),
         Block::Lines(lines) => lines
             .lines()
             .map(|line| format!("{INDENT}{line}\n"))
             .collect(),
         Block::File(name, words) => wrapped(INDENT, &format!("{name}: {words}")),
         Block::Hint(_)
+        | Block::Strip(_)
         | Block::Panel(_)
         | Block::Picture(..)
         | Block::Sketches(_)
@@ -125,7 +133,7 @@ fn block(block: &Block<'_>, style: Style) -> String {
     }
 }
 
-/// Columns without borders; what is too long for its column goes on below.
+/// Columns without borders; what is too long for its column goes on below. Where not even the words fit beside one another, a paragraph for each row.
 fn table(table: &Table, style: Style) -> String {
     let shown = |index: usize| {
         let mut cells = table.rows.iter().map(|row| &row[index]);
@@ -134,10 +142,26 @@ fn table(table: &Table, style: Style) -> String {
     let shown: Vec<usize> = (0..table.columns.len())
         .filter(|index| shown(*index))
         .collect();
+    let caption = match table.caption.is_empty() {
+        true => String::new(),
+        false => style.paint("2", &wrapped(INDENT, &table.caption)),
+    };
+    let longest = |index: &usize| {
+        let cells = table.rows.iter().map(|row| row[*index].words());
+        let texts = cells.chain([table.columns[*index].name.clone()]);
+        let words = texts.flat_map(|text| text.split(' ').map(display_width).max());
+        words.max().unwrap_or(0)
+    };
+    let least: Vec<usize> = shown.iter().map(longest).collect();
+    let room = WIDTH - INDENT.len();
+    if least.iter().map(|width| width + GAP).sum::<usize>() > room {
+        let rows = table.rows.iter().map(|row| record(table, &shown, row));
+        return caption + &rows.collect::<String>();
+    }
     let mut of = TextTable::new();
     of.load_style(NOTHING)
         .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_width((WIDTH - INDENT.len()) as u16);
+        .set_width(room as u16);
     of.force_no_tty();
     if style == Style::Coloured {
         of.enforce_styling();
@@ -164,14 +188,29 @@ fn table(table: &Table, style: Style) -> String {
         });
         of.add_row(cells.collect::<Vec<_>>());
     }
+    let constraints = least.iter().map(|width| {
+        let width = u16::try_from(width + GAP).unwrap_or(u16::MAX);
+        ColumnConstraint::LowerBoundary(comfy_table::Width::Fixed(width))
+    });
+    of.set_constraints(constraints);
     let lines = of
         .lines()
         .map(|line| format!("{INDENT}{}", line.trim_end()).trim_end().to_owned() + "\n");
-    let caption = match table.caption.is_empty() {
-        true => String::new(),
-        false => style.paint("2", &wrapped(INDENT, &table.caption)),
-    };
     caption + &lines.collect::<String>()
+}
+
+/// A row as a paragraph: its words, then its numbers by the names of their columns.
+fn record(table: &Table, shown: &[usize], row: &[Cell]) -> String {
+    let filled = shown
+        .iter()
+        .filter(|index| !row[**index].words().is_empty());
+    let parts = filled.map(|index| match table.columns[*index].is_numeric {
+        true => format!("{} {}", table.columns[*index].name, row[*index].words()),
+        false => row[*index].words(),
+    });
+    let parts: Vec<String> = parts.collect();
+    let text = printable(&parts.join("; "));
+    hanging([INDENT, "    "], &text)
 }
 
 fn aligned(cell: TextCell, is_numeric: bool) -> TextCell {
@@ -181,13 +220,63 @@ fn aligned(cell: TextCell, is_numeric: bool) -> TextCell {
     }
 }
 
-fn strip(strip: &Strip) -> String {
-    let line = |(name, spans): &(String, Vec<[f64; 2]>)| {
-        let spans: Vec<String> = spans
-            .iter()
-            .map(|[from, to]| format!("{from:.2} to {to:.2} s"))
-            .collect();
-        wrapped(INDENT, &format!("{name}: {}", spans.join(", ")))
-    };
-    strip.rows.iter().map(line).collect()
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::Number;
+
+    fn shown(columns: &[&str], row: &[&str]) -> String {
+        let columns = columns.iter().copied().map(Column::of_numbers).collect();
+        let row = row.iter().copied().map(Cell::from).collect();
+        let table = Table::new("", columns, vec![row]);
+        text(
+            &Document {
+                title: "all".to_owned(),
+                sections: vec![Section::new("Numbers", vec![Block::Table(table)])],
+                ..Document::default()
+            },
+            Style::Plain,
+        )
+    }
+
+    #[test]
+    fn no_word_of_a_table_is_cut_and_no_line_is_too_long() {
+        let name = "displacement";
+        let few = shown(&[name; 5], &["stairs.csv"; 5]);
+        assert_eq!(few.matches(name).count(), 5, "{few}");
+        // More than fit beside one another: a paragraph, each number by its name.
+        let many = shown(&[name; 9], &["stairs.csv"; 9]);
+        assert_eq!(many.matches("displacement stairs.csv").count(), 9, "{many}");
+        for text in [few, many] {
+            assert!(
+                text.lines().all(|line| display_width(line) <= WIDTH),
+                "{text}"
+            );
+        }
+    }
+
+    #[test]
+    fn colours_change_nothing_but_the_colours() {
+        let verdict = Cell::Verdict("OUTSIDE".to_owned(), false);
+        let number = Cell::from(Number::new("x", Some(12.5), "N"));
+        let columns = vec![Column::of_words("verdict"), Column::of_numbers("value")];
+        let table = Table::new("All.", columns, vec![vec![verdict, number]]);
+        let document = Document {
+            title: "all".to_owned(),
+            verdict: "Bad.".to_owned(),
+            tone: Tone::Bad,
+            sections: vec![Section::new("Numbers", vec![Block::Table(table)])],
+            ..Document::default()
+        };
+        let mut coloured = text(&document, Style::Coloured);
+        while let Some(at) = coloured.find('\u{1b}') {
+            let end = at + coloured[at..].find('m').unwrap();
+            coloured.replace_range(at..=end, "");
+        }
+        // Spaces before the end of a colour stay where they are.
+        let lines = coloured
+            .lines()
+            .map(|line| format!("{}\n", line.trim_end()));
+        assert_eq!(lines.collect::<String>(), text(&document, Style::Plain));
+    }
 }

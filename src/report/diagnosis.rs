@@ -272,8 +272,8 @@ fn where_it_shows<'a>(answer: &Answer, comparison: &Comparison) -> Option<Sectio
                 0.0 => recording.name.clone(),
                 start => format!("{}, time since {start} s", recording.name),
             };
-            blocks.push(Block::Heading(heading));
             blocks.push(Block::Strip(Strip {
+                title: heading,
                 span: [first - start, last - start],
                 rows,
             }));

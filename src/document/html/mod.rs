@@ -231,6 +231,7 @@ fn strip(strip: &Strip) -> Markup {
         format!("left:{:.3}%;width:{:.3}%", at(from), at(to) - at(from))
     };
     markup! {
+        h3 { (strip.title) }
         div.strip {
             @for (name, spans) in &strip.rows {
                 span.name { (name) }
