@@ -433,7 +433,7 @@ fn the_edge_of_a_run_is_drawn_in_the_errors_of_its_recording() {
     assert_eq!(bench.idc(&words, &[]).code, 0);
     let plain = fs::read_to_string(bench.path("out/report.html")).unwrap();
     assert!(plain.contains("class=\"sketches\"") && !plain.contains("class=\"space\""));
-    assert!(page.contains("var THREE=") && !plain.contains("var THREE="));
+    assert!(page.contains("id=\"space-library\"") && !plain.contains("id=\"space-library\""));
     bench.write("out/drawing.json", &file[..file.len() / 2]);
     let outcome = bench.idc(&words, &[]);
     assert_eq!(outcome.code, 2);

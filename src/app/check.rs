@@ -23,10 +23,10 @@ use crate::scenario::{self, AnyScenario, ScenarioError, ScenarioTemplate};
 
 /// For the help.
 pub(super) const EXAMPLES: &str = "\
-What is wrong is reported with file, line and column, and the key that was probably
-meant. Of a cell that cannot do its job changes are looked for with which it
-can; each is checked and run before it is given, and stands in --json as keys
-and values for --set. Exit codes: 0 it can be used, 2 it cannot.
+What is wrong is reported with file, line and column, and the key that was
+probably meant. Of a cell that cannot do its job changes are looked for with
+which it can; each is checked and run before it is given, and stands in --json
+as keys and values for --set. Exit codes: 0 it can be used, 2 it cannot.
 
 Examples:
   # What would be simulated, how long it is and how large its files will be.
