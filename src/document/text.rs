@@ -149,7 +149,7 @@ fn table(table: &Table, style: Style) -> String {
     let longest = |index: &usize| {
         let cells = table.rows.iter().map(|row| row[*index].words());
         let texts = cells.chain([table.columns[*index].name.clone()]);
-        let words = texts.flat_map(|text| text.split(' ').map(display_width).max());
+        let words = texts.filter_map(|text| text.split(' ').map(display_width).max());
         words.max().unwrap_or(0)
     };
     let least: Vec<usize> = shown.iter().map(longest).collect();

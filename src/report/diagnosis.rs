@@ -164,7 +164,7 @@ fn parameters<'a>(answer: &Answer) -> Option<Block<'a>> {
         .iter()
         .enumerate()
         .flat_map(|found| found.1.parameters.iter().map(move |p| (found, p)));
-    let known: Vec<((usize, &FoundEffect), &(String, Estimate))> = found.collect();
+    let known: Vec<_> = found.collect();
     // Intervals relative to their values, on one scale.
     let relative = |e: &Estimate| [e.low, e.high].map(|end| (end - e.value) / e.value.abs());
     let ends = known.iter().flat_map(|(_, (_, e))| relative(e));

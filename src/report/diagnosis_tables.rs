@@ -86,7 +86,7 @@ fn prediction(errors: &[PredictionError], reference_noise: &str) -> Option<Table
     (!errors.is_empty()).then(|| {
         Table::new(
             "Root mean square of the errors on what was not fitted to; σ: the robust one in multiples of the last but one column.",
-            vec![Column::of_words("recording"), Column::of_words("channel"), Column::of_numbers("nominal"), Column::of_numbers("within tolerances"), Column::of_numbers("improved"), Column::of_numbers(format!("{reference_noise}")), Column::of_numbers("improved, σ")],
+            vec![Column::of_words("recording"), Column::of_words("channel"), Column::of_numbers("nominal"), Column::of_numbers("within tolerances"), Column::of_numbers("improved"), Column::of_numbers(reference_noise), Column::of_numbers("improved, σ")],
             errors.iter().enumerate().map(row).collect(),
         )
     })

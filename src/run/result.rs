@@ -70,6 +70,7 @@ pub enum RunKind {
 }
 
 impl RunKind {
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde asks")]
     fn is_cell(&self) -> bool {
         *self == Self::Cell
     }
@@ -174,10 +175,10 @@ impl RunResult {
     /// Its numbers for people, in the order of the file; without those that only some runs have, and without the time that it took.
     #[must_use]
     pub fn metrics(&self) -> Vec<(Label, Option<f64>)> {
-        fn of<S: Measured>(summary: &S) -> Vec<Option<Option<f64>>> {
+        fn of<S: Measured>(summary: &S) -> Vec<(bool, Option<f64>)> {
             let shown = |metric: &Metric<S>| {
                 let value = (metric.value)(summary);
-                (value.is_some() || !metric.is_optional).then_some(value)
+                (value.is_some() || !metric.is_optional, value)
             };
             S::METRICS.iter().map(shown).collect()
         }
@@ -186,8 +187,8 @@ impl RunResult {
             RunSummary::Bench(summary) => of(summary.as_ref()),
         };
         let all = labels(self.is_bench()).into_iter().zip(values);
-        all.filter_map(|(label, value)| Some((label, value?)))
-            .collect()
+        let all = all.filter(|(_, (is_shown, _))| *is_shown);
+        all.map(|(label, (_, value))| (label, value)).collect()
     }
 
     /// Its numbers without the time that it took, which differs from run to run.
