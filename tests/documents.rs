@@ -1,5 +1,7 @@
 //! README.md and docs/GUIDE.md: every command in a box runs as printed, in order, from a folder that looks like the project's.
 
+use std::path::Path;
+
 use crate::common::project;
 use crate::help::{place, shell};
 
@@ -79,7 +81,7 @@ fn every_link_of_a_document_leads_to_a_file() {
     let pages = folders.into_iter().flat_map(|folder| {
         let entries = std::fs::read_dir(project(folder)).unwrap();
         let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
-        let pages = names.filter(|name| name.ends_with(".md"));
+        let pages = names.filter(|name| Path::new(name).extension().is_some_and(|end| end == "md"));
         pages.map(move |name| (folder, name)).collect::<Vec<_>>()
     });
     for (folder, name) in pages {

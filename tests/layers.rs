@@ -281,7 +281,9 @@ fn paths_in_the_documents_exist() {
                 line if line.starts_with("| | ") => room,
                 _ => "",
             };
-            let in_room = |quote: &&str| !room.is_empty() && quote.ends_with(".rs");
+            let in_room = |quote: &&str| {
+                !room.is_empty() && Path::new(quote).extension().is_some_and(|end| end == "rs")
+            };
             for path in quoted.into_iter().filter(|q| of_project(q) || in_room(q)) {
                 let exists = project(path).exists() || project(room).join(path).exists();
                 assert!(exists, "{document} names {path}, which does not exist");
