@@ -44,7 +44,6 @@ fn block(block: &Block<'_>) -> String {
     match block {
         Block::Heading(text) => format!("\n### {}\n", escape(text)),
         Block::Paragraph(text) => format!("\n{}\n", escape(text)),
-        Block::Statement(text, rests_on) => format!("\n{} *{}*\n", escape(text), escape(rests_on)),
         Block::Table(of) => table(of),
         Block::Lines(lines) => format!("\n```\n{}\n```\n", lines.trim_end()),
         Block::File(name, words) => format!("\n[{}]({name}): {}\n", escape(name), escape(words)),

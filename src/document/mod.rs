@@ -70,7 +70,7 @@ pub struct Fact {
     pub remark: String,
 }
 
-/// A part of a page.
+/// A part of a document.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Section<'a> {
     /// Heading, and name in the list of contents.
@@ -90,8 +90,6 @@ pub enum Block<'a> {
     Paragraph(String),
     /// A paragraph that helps to read what a page shows.
     Hint(String),
-    /// A statement, and what it rests on.
-    Statement(String, String),
     /// Rows and columns.
     Table(Table),
     /// A chart.

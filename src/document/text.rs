@@ -113,10 +113,6 @@ fn block(block: &Block<'_>, style: Style) -> String {
     match block {
         Block::Heading(text) => style.paint("1", &wrapped(INDENT, &printable(text))),
         Block::Paragraph(text) => wrapped(INDENT, &printable(text)),
-        Block::Statement(text, rests_on) => {
-            wrapped(INDENT, &printable(text))
-                + &style.paint("2", &wrapped("    ", &printable(rests_on)))
-        }
         Block::Table(of) => table(of, style),
         Block::Lines(lines) => lines
             .lines()

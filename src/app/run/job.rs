@@ -39,6 +39,8 @@ pub(super) struct RunOptions {
 
 /// A run that has ended, its files written.
 pub(super) struct RunOutcome {
+    /// Its numbers.
+    pub result: RunResult,
     /// Content of summary.json.
     pub document: String,
     /// Its numbers for people.
@@ -180,6 +182,7 @@ fn perform_cell(
             table: text(&report, run_options.style),
             messages: messages(&result),
             code: code(&result),
+            result,
             document,
             names,
             shown: (scene, summary),
@@ -231,6 +234,7 @@ fn perform_bench(
         table: text(&report, run_options.style),
         messages: messages(&result),
         code: code(&result),
+        result,
         document,
         names,
         shown: (scene, options.summary_markdown),

@@ -123,7 +123,7 @@ fn one(
         Some(result) => result,
         None => {
             let outcome = job.perform(&source, folder, arguments.run_options(), None, progress)?;
-            serde_json::from_str(&outcome.document)?
+            outcome.result
         }
     };
     Ok(Done {

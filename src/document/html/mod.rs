@@ -127,7 +127,6 @@ fn block(block_of: &Block<'_>, budget: &Budget) -> Markup {
             Block::Panel(of) => (chart(of, budget)),
             Block::Strip(of) if of.rows.iter().all(|(_, spans)| spans.is_empty()) => p.hint { "At no time." },
             Block::Strip(of) => (strip(of)),
-            Block::Statement(text, rests_on) => p { (bound(text)) small.rests { (rests_on) } },
             Block::Lines(text) => pre { (text) },
             // Drawn by src/figure, whose texts are escaped.
             Block::Picture(words, svg) => div.picture role="img" aria-label=(words) { (PreEscaped(svg)) },
