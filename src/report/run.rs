@@ -60,7 +60,10 @@ impl<'a> RunReport<'a> {
             title: result.title.clone(),
             tone,
             verdict,
-            lead: far.into_iter().chain(drives).chain(notes).collect(),
+            lead: (far.into_iter().chain(tolerance(result)))
+                .chain(drives)
+                .chain(notes)
+                .collect(),
             facts: facts(result),
             sections: sections.into_iter().flatten().collect(),
             footer: "Made by idc, which simulates the device and its cell. recording.rrd, where it stands beside this page, shows the run in space: `idc view recording.rrd`.".to_owned(),
@@ -189,6 +192,20 @@ fn out_of_bounds(result: &RunResult, bound: &BoundCheck) -> String {
         .map_or("not determined".to_owned(), |v| with_unit(v, unit));
     let text = format!("{pass}{name} is {value}, expected {} {unit}", bound.ends());
     text.trim_end().to_owned()
+}
+
+/// Limits of the finished edge, in a sentence; none of another run.
+fn tolerance(result: &RunResult) -> Option<String> {
+    let limits = result.chamfer?;
+    let least = quantity::number(limits.leg_min_mm, "mm");
+    let leg = match limits.leg_max_mm {
+        Some(most) => format!("{least} to {}", with_unit(most, "mm")),
+        None => format!("at least {least} mm"),
+    };
+    let burr = with_unit(limits.residual_burr_max_mm, "mm");
+    Some(format!(
+        "Tolerance: chamfer leg {leg}, burr at most {burr}."
+    ))
 }
 
 /// Drives that were at their limit, with time and duration; none if none was.

@@ -237,6 +237,11 @@ class Job:
             self.tally(where, found)
         elif text.startswith("Note: "):
             self.checked.fact(where, text.removeprefix("Note: ").removesuffix("."), next((n for n in self.document["notes"] if n in text), None))
+        elif text.startswith("Tolerance: "):
+            chamfer = self.run.scenario["workpiece"].get("chamfer", {})
+            stated = {"low": chamfer.get("leg_min_mm", 0.0), "high": chamfer.get("leg_max_mm"), "burr": chamfer.get("residual_burr_max_mm", 0.02)}
+            leg = "{low} to {high} mm" if stated["high"] else "at least {low} mm"
+            self.checked.sentence(where, text, [f"Tolerance: chamfer leg {leg}, burr at most {{burr}} mm."], stated)
         elif text.startswith("Drives at their limit: "):
             for joint, start, time in re.findall(rf"([^ ,]+) from ({common.PRINTED}) s on for ({common.PRINTED}) s", text):
                 own = next(j for j in self.numbers["joints"] if j["joint"] == joint)
@@ -283,6 +288,7 @@ class Job:
             self.checked.number(f"{where}: {key}", text, row[key])
 
     def note(self, where, key, note):
+        note = note.replace("\u00a0", " ")
         if key in TIMING or note in FIXED:
             return
         if key == "joint_torque_share_percent":

@@ -64,7 +64,7 @@ pub fn html(page: &Document<'_>) -> String {
                     @for text in &page.lead { p.lead { (text) } }
                     @if !page.facts.is_empty() {
                         dl.facts { @for fact in &page.facts {
-                            div { dt { (fact.name) } dd data-key=[key(&fact.value)] { (fact.value.words()) @if !fact.remark.is_empty() { small { (fact.remark) } } } }
+                            div { dt { (fact.name) } dd data-key=[key(&fact.value)] { (fact.value.words()) @if !fact.remark.is_empty() { small { (bound(&fact.remark)) } } } }
                         } }
                     }
                     @if page.sections.len() > 1 { nav aria-label="Contents" { @for section in &page.sections {
