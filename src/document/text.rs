@@ -116,7 +116,7 @@ fn block(block: &Block<'_>, style: Style) -> String {
         Block::Table(of) => table(of, style),
         Block::Lines(lines) => lines
             .lines()
-            .map(|line| format!("{INDENT}{line}\n"))
+            .map(|line| format!("{INDENT}{line}").trim_end().to_owned() + "\n")
             .collect(),
         Block::File(name, words) => wrapped(INDENT, &format!("{name}: {words}")),
         Block::Hint(_)

@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use serde::Serialize;
 
 use crate::demonstration::{self as scene, Scene, Stage};
-use crate::diagnosis::answer::words::{capital, display_name, wrapped};
+use crate::diagnosis::answer::words::{capital, display_name};
+use crate::document::{Block, Cell, Column, Document, Section, Style, Table, text};
 use crate::effects::{Effect, Header, Subsystem, Which, kinds};
 use crate::plant::PlantParameters;
 use crate::quantity::significant;
@@ -173,57 +174,58 @@ impl Explained {
 
     /// For a terminal.
     pub(super) fn text(&self) -> String {
-        let mut text = wrapped(
-            &format!("{}: ", self.name),
-            &format!("{}. {}", self.meaning, self.cause),
-        );
-        text = text.trim_end().to_owned() + "\n\n";
-        for line in self.equation {
-            // Writing into a text cannot fail.
-            let _ = writeln!(text, "    {line}");
-        }
-        text.push('\n');
-        text += &wrapped("", self.legend);
-        text += &wrapped("Source: ", self.source);
-        text += "\nNumbers:\n";
-        let rows: Vec<[String; 4]> = self.parameters.iter().map(Number::cells).collect();
-        let wide = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
-        let wide = [0, 1, 2].map(|column| wide(column).unwrap_or(0));
-        for [key, words, range, usual] in &rows {
-            let row = format!(
-                "  {key:<0$}  {words:<1$}  {range:<2$}  usual {usual}",
-                wide[0], wide[1], wide[2]
-            );
-            let _ = writeln!(text, "{row}");
-        }
-        text += "\n";
-        text += &wrapped("Shows as: ", &capital(self.signature));
-        text += "\nConfused with:\n";
-        for rival in &self.confused_with {
-            text += &wrapped(&format!("  {}: ", rival.name), rival.distinguished_by);
-        }
-        match (&self.command, self.chain) {
-            (Some(command), _) => {
-                let _ = writeln!(text, "\nTry it:\n  {command}");
-                text += "In a scenario:\n";
+        let mut equation = vec![Block::Lines(self.equation.join("\n"))];
+        equation.push(Block::Paragraph(self.legend.to_owned()));
+        equation.push(Block::Paragraph(format!("Source: {}", self.source)));
+        let columns = vec![
+            Column::of_words("key"),
+            Column::of_words("number"),
+            Column::of_words("range"),
+            Column::of_numbers("usual"),
+        ];
+        let rows = self
+            .parameters
+            .iter()
+            .map(|number| number.cells().map(Cell::from).to_vec());
+        let numbers = Table::new("", columns, rows.collect());
+        let rivals = self.confused_with.iter();
+        let rivals = rivals.map(|rival| format!("{}: {}", rival.name, rival.distinguished_by));
+        let lines = |text: &str| vec![Block::Lines(text.to_owned())];
+        let own = match self.chain {
+            Some(chain) if self.command.is_none() => {
+                format!("In a rig file with chain = \"{chain}\" below [rig]")
             }
-            (None, chain) => {
-                let chain = chain.unwrap_or_default();
-                let _ = writeln!(
-                    text,
-                    "\nIn a rig file with chain = \"{chain}\" below [rig]:"
-                );
-            }
-        }
-        for line in &self.lines {
-            let _ = writeln!(text, "  {line}");
-        }
-        let _ = writeln!(
-            text,
-            "\nPicture: {}, or idc effects {} --out FILE.svg",
+            _ => "In a scenario".to_owned(),
+        };
+        let command = self.command.as_deref();
+        let picture = format!(
+            "{}, or idc effects {} --out FILE.svg",
             self.picture, self.name
         );
-        text
+        let sections = [
+            Some(Section::new("Equation", equation)),
+            Some(Section::new("Numbers", vec![Block::Table(numbers)])),
+            Some(Section::new(
+                "Shows as",
+                vec![Block::Paragraph(capital(self.signature))],
+            )),
+            Some(Section::new(
+                "Confused with",
+                rivals.map(Block::Paragraph).collect(),
+            )),
+            command.map(|command| Section::new("Try it", lines(command))),
+            Some(Section::new(&own, lines(&self.lines.join("\n")))),
+            Some(Section::new("Picture", vec![Block::Paragraph(picture)])),
+        ];
+        text(
+            &Document {
+                title: self.name.to_owned(),
+                verdict: format!("{}. {}", capital(self.meaning), self.cause),
+                sections: sections.into_iter().flatten().collect(),
+                ..Document::default()
+            },
+            Style::Plain,
+        )
     }
 
     /// For docs/EFFECTS.md.
