@@ -91,6 +91,7 @@ pub mod plant;
 #[cfg(feature = "cli")]
 pub mod proof;
 pub mod quantity;
+pub mod recorded_arm;
 pub mod recording;
 pub mod removal;
 pub mod replay;

@@ -6,8 +6,8 @@
 use glam::{DMat3, DQuat, DVec3};
 use glamx::DPose3;
 
-/// Most joints a chain may hold: seven of the arm and one of the device at its end.
-pub const MAX_JOINTS: usize = 8;
+/// Most joints a chain may hold: seven of an arm, its external axes, and the device at its end.
+pub const MAX_JOINTS: usize = 10;
 
 /// Motion of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,7 +4,7 @@
 //! algorithm (Featherstone, Rigid Body Dynamics Algorithms, 2008, chapters 5 and 6), written with
 //! three-vectors. Joint damping and friction are not part of either: they belong to the joints' drives.
 
-use crate::arm::chain::{BodyInertia, JointKind, KinematicChain, MAX_JOINTS};
+use crate::arm::chain::{BodyInertia, Joint, JointKind, KinematicChain, MAX_JOINTS};
 use crate::arm::kinematics::link_poses;
 use glam::{DMat3, DQuat, DVec3};
 use glamx::DPose3;
@@ -17,6 +17,85 @@ struct LinkState {
     joint_in_parent: DVec3,
     force: DVec3,
     moment: DVec3,
+}
+
+/// Motion of a link's frame, in its own axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LinkMotion {
+    /// Acceleration of its origin less gravity [m/s2].
+    pub acceleration: DVec3,
+    /// Angular velocity [rad/s].
+    pub spin: DVec3,
+    /// Angular acceleration [rad/s2].
+    pub spin_rate: DVec3,
+}
+
+impl LinkMotion {
+    /// Of a base at rest. A base that accelerates upwards is the same as gravity downwards.
+    fn of_base(world_from_base: DQuat, gravity: DVec3) -> Self {
+        Self {
+            acceleration: -(world_from_base.inverse() * gravity),
+            spin: DVec3::ZERO,
+            spin_rate: DVec3::ZERO,
+        }
+    }
+
+    /// Goes on to the link behind a joint, whose rotation and origin in the link before are returned.
+    fn advance(&mut self, joint: &Joint, q: f64, qd: f64, qdd: f64) -> (DMat3, DVec3) {
+        let pose = joint.parent_from_link(q);
+        *self = self.of_fixed(&pose);
+        let rate = joint.axis * qd;
+        match joint.kind {
+            JointKind::Revolute => {
+                self.spin_rate += joint.axis * qdd + self.spin.cross(rate);
+                self.spin += rate;
+            }
+            JointKind::Prismatic => {
+                self.acceleration += joint.axis * qdd + 2.0 * self.spin.cross(rate);
+            }
+        }
+        (DMat3::from_quat(pose.rotation), pose.translation)
+    }
+
+    /// Of a frame that is fixed to the link, in that frame's axes.
+    #[must_use]
+    pub fn of_fixed(&self, link_from_frame: &DPose3) -> Self {
+        let arm = link_from_frame.translation;
+        let frame_from_link = DMat3::from_quat(link_from_frame.rotation).transpose();
+        let at_frame =
+            self.acceleration + self.spin_rate.cross(arm) + self.spin.cross(self.spin.cross(arm));
+        Self {
+            acceleration: frame_from_link * at_frame,
+            spin: frame_from_link * self.spin,
+            spin_rate: frame_from_link * self.spin_rate,
+        }
+    }
+
+    /// Force [N] and moment about the frame's origin [N m] that move a body so.
+    pub fn wrench_of(&self, body: &BodyInertia) -> (DVec3, DVec3) {
+        let (spin, spin_rate, centre) = (self.spin, self.spin_rate, body.centre_of_mass);
+        let force = body.mass
+            * (self.acceleration + spin_rate.cross(centre) + spin.cross(spin.cross(centre)));
+        let moment =
+            body.inertia * spin_rate + spin.cross(body.inertia * spin) + centre.cross(force);
+        (force, moment)
+    }
+}
+
+/// Motion of the chain's tip; arguments as in [`inverse_dynamics`].
+pub fn tip_motion(
+    chain: &KinematicChain,
+    world_from_base: DQuat,
+    gravity: DVec3,
+    q: &[f64],
+    qd: &[f64],
+    qdd: &[f64],
+) -> LinkMotion {
+    let mut motion = LinkMotion::of_base(world_from_base, gravity);
+    for (index, joint) in chain.joints.iter().enumerate() {
+        motion.advance(joint, q[index], qd[index], qdd[index]);
+    }
+    motion.of_fixed(&chain.tip_from_last)
 }
 
 const AT_REST: LinkState = LinkState {
@@ -46,35 +125,10 @@ pub fn inverse_dynamics(
     );
     let (q, qd, qdd, out) = (&q[..count], &qd[..count], &qdd[..count], &mut out[..count]);
     let mut links = [AT_REST; MAX_JOINTS];
-    let mut spin = DVec3::ZERO;
-    let mut spin_rate = DVec3::ZERO;
-    // A base that accelerates upwards is the same as gravity downwards.
-    let mut acceleration = -(world_from_base.inverse() * gravity);
+    let mut motion = LinkMotion::of_base(world_from_base, gravity);
     for (index, joint) in chain.joints.iter().enumerate() {
-        let pose = joint.parent_from_link(q[index]);
-        let parent_from_link = DMat3::from_quat(pose.rotation);
-        let link_from_parent = parent_from_link.transpose();
-        let arm = pose.translation;
-        acceleration =
-            link_from_parent * (acceleration + spin_rate.cross(arm) + spin.cross(spin.cross(arm)));
-        spin = link_from_parent * spin;
-        spin_rate = link_from_parent * spin_rate;
-        let rate = joint.axis * qd[index];
-        match joint.kind {
-            JointKind::Revolute => {
-                spin_rate += joint.axis * qdd[index] + spin.cross(rate);
-                spin += rate;
-            }
-            JointKind::Prismatic => {
-                acceleration += joint.axis * qdd[index] + 2.0 * spin.cross(rate);
-            }
-        }
-        let body = &joint.body;
-        let centre = body.centre_of_mass;
-        let force =
-            body.mass * (acceleration + spin_rate.cross(centre) + spin.cross(spin.cross(centre)));
-        let moment =
-            body.inertia * spin_rate + spin.cross(body.inertia * spin) + centre.cross(force);
+        let (parent_from_link, arm) = motion.advance(joint, q[index], qd[index], qdd[index]);
+        let (force, moment) = motion.wrench_of(&joint.body);
         links[index] = LinkState {
             parent_from_link,
             joint_in_parent: arm,

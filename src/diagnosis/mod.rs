@@ -1,6 +1,7 @@
 //! Finds what physics recordings contain that the nominal model leaves out.
 
 pub mod answer;
+pub mod arm;
 pub mod data_fault;
 pub mod diagnose;
 pub mod difference;

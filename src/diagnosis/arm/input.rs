@@ -1,0 +1,42 @@
+//! What a diagnosis of a recorded arm is made of.
+
+use crate::recorded_arm::motion::Motion;
+use crate::recorded_arm::simulate::Channel;
+use crate::recorded_arm::{ArmParameters, Quantity};
+
+/// A number that is known within bounds: the truth lies anywhere between them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tolerated {
+    /// The number.
+    pub quantity: Quantity,
+    /// Least and largest value [its unit].
+    pub bounds: [f64; 2],
+}
+
+/// A recording of an arm.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ArmRecording {
+    /// Name for people, that of its file.
+    pub name: String,
+    /// Motion of its joints.
+    pub motion: Motion,
+    /// Readings by channel and sample; not a number where there is none.
+    pub readings: Vec<Vec<f64>>,
+}
+
+/// Model, recordings and tolerances.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ArmInput {
+    /// The arm as declared.
+    pub nominal: ArmParameters,
+    /// Names of the links behind the joints, base first.
+    pub links: Vec<String>,
+    /// Numbers that are known within bounds; what is not among them is exact.
+    pub tolerated: Vec<Tolerated>,
+    /// Measured channels.
+    pub channels: Vec<Channel>,
+    /// Standard deviation of the noise of each channel [its unit].
+    pub noise: Vec<f64>,
+    /// Recordings to diagnose from.
+    pub recordings: Vec<ArmRecording>,
+}

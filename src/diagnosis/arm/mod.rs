@@ -1,0 +1,3 @@
+//! A recorded arm: what physics its log contains that its description leaves out.
+
+pub mod input;

@@ -1,0 +1,199 @@
+//! Readings of a recorded arm along a measured motion.
+
+use super::bristles::bristles;
+use super::delay::delayed;
+use super::drive::{JointMoment, own_torque};
+use super::motion::Motion;
+use super::parameters::ArmParameters;
+use crate::arm::chain::MAX_JOINTS;
+use crate::arm::dynamics::{LinkMotion, inverse_dynamics, tip_motion};
+use crate::arm::kinematics::{link_poses, point_force_torques};
+use glam::DQuat;
+use glamx::DPose3;
+
+/// A measured channel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Channel {
+    /// Current [A] or torque [N m] of a joint's drive.
+    Drive(usize),
+    /// Angle of a joint on the link's side of its gear [rad].
+    Link(usize),
+    /// Channel of the wrench sensor [N or N m].
+    Wrench(usize),
+}
+
+/// Rigid bodies along a motion: all that does not depend on drives or sensors.
+#[derive(Debug, Clone)]
+pub struct RigidCourse {
+    /// Torque that each gear carries, by joint and sample [N m].
+    pub carried: Vec<Vec<f64>>,
+    /// Motion of the flange by sample.
+    pub flange: Vec<LinkMotion>,
+}
+
+impl RigidCourse {
+    /// Of an arm along a motion.
+    #[must_use]
+    pub fn of(arm: &ArmParameters, motion: &Motion) -> Self {
+        let joints = arm.joints();
+        let chain = arm.loaded_chain();
+        let gravity = arm.true_gravity();
+        let mut carried = vec![Vec::with_capacity(motion.len()); joints];
+        let mut flange = Vec::with_capacity(if arm.wrench.is_some() {
+            motion.len()
+        } else {
+            0
+        });
+        let soft = arm.drives.iter().any(|d| d.compliance != 0.0);
+        let [mut q, mut qd, mut qdd, mut out] = [[0.0; MAX_JOINTS]; 4];
+        for i in 0..motion.len() {
+            for j in 0..joints {
+                q[j] = motion.position[j][i] - arm.drives[j].encoder_offset;
+                qd[j] = motion.speed[j][i];
+                qdd[j] = motion.acceleration[j][i];
+            }
+            let (q, qd, qdd, out) = (
+                &mut q[..joints],
+                &qd[..joints],
+                &qdd[..joints],
+                &mut out[..joints],
+            );
+            inverse_dynamics(&chain, DQuat::IDENTITY, gravity, q, qd, qdd, out);
+            if soft {
+                for j in 0..joints {
+                    q[j] -= arm.drives[j].compliance * out[j];
+                }
+                inverse_dynamics(&chain, DQuat::IDENTITY, gravity, q, qd, qdd, out);
+            }
+            for j in 0..joints {
+                carried[j].push(out[j]);
+            }
+            if arm.wrench.is_some() {
+                flange.push(tip_motion(&chain, DQuat::IDENTITY, gravity, q, qd, qdd));
+            }
+        }
+        Self { carried, flange }
+    }
+}
+
+/// Torques by which pushes load the joints, by joint and sample [N m]; none where there is no push.
+fn pushed(arm: &ArmParameters, motion: &Motion) -> Option<Vec<Vec<f64>>> {
+    let own = || {
+        let pushes = arm.pushes.iter();
+        pushes.filter(|p| p.recording == motion.recording)
+    };
+    own().next()?;
+    let joints = arm.joints();
+    let mut all = vec![vec![0.0; motion.len()]; joints];
+    let mut poses = [DPose3::IDENTITY; MAX_JOINTS];
+    for i in 0..motion.len() {
+        for push in own() {
+            let share = push.share(motion.time[i]);
+            if share == 0.0 {
+                continue;
+            }
+            let mut q = [0.0; MAX_JOINTS];
+            for j in 0..joints {
+                q[j] = motion.position[j][i];
+            }
+            link_poses(
+                &arm.chain,
+                DPose3::IDENTITY,
+                &q[..joints],
+                &mut poses[..joints],
+            );
+            let flange = poses[joints - 1] * arm.chain.tip_from_last;
+            let mut out = [0.0; MAX_JOINTS];
+            let force = push.force * share;
+            point_force_torques(
+                &arm.chain,
+                &poses[..joints],
+                flange.translation,
+                force,
+                &mut out[..joints],
+            );
+            for j in 0..joints {
+                all[j][i] += out[j];
+            }
+        }
+    }
+    Some(all)
+}
+
+/// Share of the sliding friction of each joint along a motion [1], for the lengths of the drives.
+#[must_use]
+pub fn all_bristles(arm: &ArmParameters, motion: &Motion) -> Vec<Vec<f64>> {
+    let joints = motion.position.iter().zip(&arm.drives);
+    joints
+        .map(|(position, drive)| bristles(position, drive.bristle_length))
+        .collect()
+}
+
+/// Moments of a joint along a motion.
+pub fn moments<'a>(
+    motion: &'a Motion,
+    bristles: &'a [Vec<f64>],
+    carried: &'a [Vec<f64>],
+    joint: usize,
+) -> impl Iterator<Item = JointMoment> + 'a {
+    (0..motion.len()).map(move |i| JointMoment {
+        time: motion.time[i] - motion.time[0],
+        position: motion.position[joint][i],
+        speed: motion.speed[joint][i],
+        acceleration: motion.acceleration[joint][i],
+        bristles: bristles[joint][i],
+        carried: carried[joint][i],
+    })
+}
+
+/// Readings of channels along a motion, by channel and sample. `bristles` and `rigid` are those of the arm.
+#[must_use]
+pub fn readings(
+    arm: &ArmParameters,
+    motion: &Motion,
+    channels: &[Channel],
+    bristles: &[Vec<f64>],
+    rigid: &RigidCourse,
+) -> Vec<Vec<f64>> {
+    let pushed = pushed(arm, motion);
+    let mut wrench: Option<Vec<[f64; 6]>> = None;
+    let mut of = |channel: &Channel| match *channel {
+        Channel::Drive(joint) => {
+            let drive = &arm.drives[joint];
+            let laws: Vec<_> = arm.laws.iter().filter(|l| l.joint == joint).collect();
+            let torque = |(i, moment): (usize, JointMoment)| {
+                let mut torque = moment.carried + own_torque(drive, &moment);
+                torque += laws.iter().map(|law| law.torque(&moment)).sum::<f64>();
+                if let Some(pushed) = &pushed {
+                    torque -= pushed[joint][i];
+                }
+                torque * drive.inverse_gain
+            };
+            let all: Vec<f64> = moments(motion, bristles, &rigid.carried, joint)
+                .enumerate()
+                .map(torque)
+                .collect();
+            delayed(&motion.time, &all, arm.delay)
+        }
+        Channel::Link(joint) => {
+            let compliance = arm.drives[joint].compliance;
+            let both = motion.position[joint].iter().zip(&rigid.carried[joint]);
+            both.map(|(q, carried)| q - compliance * carried).collect()
+        }
+        Channel::Wrench(k) => {
+            let all = wrench.get_or_insert_with(|| wrench_readings(arm, motion, rigid));
+            all.iter().map(|r| r[k]).collect()
+        }
+    };
+    channels.iter().map(&mut of).collect()
+}
+
+fn wrench_readings(arm: &ArmParameters, motion: &Motion, rigid: &RigidCourse) -> Vec<[f64; 6]> {
+    let Some(sensor) = &arm.wrench else {
+        return vec![[0.0; 6]; motion.len()];
+    };
+    let flange = rigid.flange.iter().zip(&motion.time);
+    flange
+        .map(|(flange, time)| sensor.reading(&sensor.truth(flange), time - motion.time[0]))
+        .collect()
+}
