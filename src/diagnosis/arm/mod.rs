@@ -1,3 +1,11 @@
 //! A recorded arm: what physics its log contains that its description leaves out.
 
+pub mod effect;
+pub mod evidence;
+pub mod fit;
+pub mod hypothesis;
 pub mod input;
+pub mod laws;
+pub mod pushed;
+pub mod quadratic;
+pub mod search;
