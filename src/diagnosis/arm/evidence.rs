@@ -7,7 +7,9 @@ use std::sync::Arc;
 
 use super::input::ArmInput;
 use crate::recorded_arm::bristles::bristles;
-use crate::recorded_arm::simulate::{Channel, RigidCourse, readings};
+use crate::recorded_arm::delay::delayed;
+use crate::recorded_arm::law::JointLaw;
+use crate::recorded_arm::simulate::{Channel, RigidCourse, moments, readings};
 use crate::recorded_arm::{ArmParameters, Quantity};
 
 /// Speed below which a joint stands still, as a share of the largest that its description allows [1].
@@ -132,7 +134,10 @@ impl<'a> Evidence<'a> {
     /// Change of the values for one unit of a quantity, at the model of a course whose own values are given.
     #[must_use]
     pub fn derivative(&self, course: &Course, quantity: Quantity) -> Column {
-        let asked = self.moved_by(quantity);
+        if let Quantity::LawAmplitude(law, which) = quantity {
+            return self.of_law(course, &course.arm.laws[law], which);
+        }
+        let asked = self.moved_by(quantity, &course.arm);
         let value = quantity.value(&course.arm);
         let step = quantity.step(value);
         let at = |value: f64| {
@@ -152,10 +157,36 @@ impl<'a> Evidence<'a> {
         above
     }
 
+    /// Change of the values for one unit of a law's factor, on which its torque depends linearly.
+    fn of_law(&self, course: &Course, law: &JointLaw, which: usize) -> Column {
+        let mut unit = *law;
+        unit.amplitude = [0.0; 2];
+        unit.amplitude[which] = 1.0;
+        let joint = law.joint;
+        let mut out = vec![Vec::new(); self.rows.len()];
+        let channels = self.input.channels.iter();
+        let Some(c) = { channels }.position(|c| *c == Channel::Drive(joint)) else {
+            return out;
+        };
+        let factor = course.arm.drives[joint].inverse_gain / self.input.noise[c];
+        let all: Vec<Vec<f64>> = (self.input.recordings.iter().enumerate())
+            .map(|(r, recording)| {
+                let (bristles, rigid) = course.parts(r);
+                let drive = &course.arm.drives[joint];
+                let moments = moments(drive, &recording.motion, bristles, &rigid.carried, joint);
+                let torque: Vec<f64> = moments.map(|m| factor * unit.torque(&m)).collect();
+                delayed(&recording.motion.time, &torque, course.arm.delay)
+            })
+            .collect();
+        let rows = self.rows[c].iter();
+        out[c] = rows.map(|row| all[row.recording][row.sample]).collect();
+        out
+    }
+
     /// Channels that a quantity can move.
-    fn moved_by(&self, quantity: Quantity) -> Vec<usize> {
+    fn moved_by(&self, quantity: Quantity, arm: &ArmParameters) -> Vec<usize> {
         let channels = self.input.channels.iter().enumerate();
-        let moved = channels.filter(|(_, channel)| is_moved(quantity, **channel, self.input));
+        let moved = channels.filter(|(_, channel)| is_moved(quantity, **channel, arm));
         moved.map(|(c, _)| c).collect()
     }
 }
@@ -194,6 +225,12 @@ impl Course {
         &self.arm
     }
 
+    /// Bristles and rigid bodies along a recording.
+    #[must_use]
+    pub fn parts(&self, recording: usize) -> (&[Vec<f64>], &RigidCourse) {
+        (&self.bristles[recording], &self.rigid[recording])
+    }
+
     /// Torque that a gear carries along a recording [N m].
     #[must_use]
     pub fn carried(&self, recording: usize) -> &[Vec<f64>] {
@@ -207,7 +244,7 @@ impl Course {
     }
 }
 
-fn is_moved(quantity: Quantity, channel: Channel, input: &ArmInput) -> bool {
+fn is_moved(quantity: Quantity, channel: Channel, arm: &ArmParameters) -> bool {
     use Quantity as Q;
     match quantity {
         Q::LinkMass(_) | Q::LinkCentre(..) | Q::LoadMass | Q::LoadMoment(_) => {
@@ -224,7 +261,7 @@ fn is_moved(quantity: Quantity, channel: Channel, input: &ArmInput) -> bool {
         }
         Q::SensorRotation => matches!(channel, Channel::Wrench(_)),
         Q::LawAmplitude(law, _) | Q::LawPlace(law) | Q::LawWidth(law) => {
-            let joint = input.nominal.laws.get(law).map(|law| law.joint);
+            let joint = arm.laws.get(law).map(|law| law.joint);
             match channel {
                 Channel::Drive(of) => joint.is_none_or(|joint| joint == of),
                 _ => false,

@@ -17,6 +17,9 @@ const BRISTLES: ([f64; 2], [f64; 2]) = ([1e-6, 2e-3], [2e-4, 2e-4]);
 /// Difference between the stamps of currents and positions that is no effect [s]: stamps are written to a millisecond.
 const STAMPS: f64 = 5e-4;
 
+/// Decrease of the cost by a law alone below which it is not looked at further [1].
+const OF_NO_USE: f64 = 4.0;
+
 /// Effects, fitted.
 #[derive(Debug, Clone)]
 pub struct Hypothesis {
@@ -239,6 +242,14 @@ impl Base {
                 continue;
             }
             let column = evidence.derivative(&course, *quantity);
+            // Of thousands of laws most have nothing to do with what is left.
+            if candidate.law.is_some() && added.is_empty() && candidate.screened.len() == 1 {
+                let with = weighed(&products(&column, start), scales);
+                let own = weighed(&products(&column, &column), scales);
+                if with * with < OF_NO_USE * own {
+                    return 0.0;
+                }
+            }
             let last = hessian.nrows();
             hessian = hessian.insert_row(last, 0.0).insert_column(last, 0.0);
             gradient = gradient.insert_row(last, weighed(&products(&column, start), scales));

@@ -82,7 +82,13 @@ fn range(evidence: &Evidence, fit: &Fit, joint: usize, variable: Variable) -> Op
     let (mut low, mut high) = (f64::MAX, f64::MIN);
     for (r, recording) in evidence.input.recordings.iter().enumerate() {
         let (bristles, carried) = (fit.course.bristles(r), fit.course.carried(r));
-        for moment in moments(&recording.motion, bristles, carried, joint) {
+        for moment in moments(
+            &fit.arm.drives[joint],
+            &recording.motion,
+            bristles,
+            carried,
+            joint,
+        ) {
             let value = variable.of(&moment);
             (low, high) = (low.min(value), high.max(value));
         }

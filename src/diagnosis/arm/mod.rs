@@ -1,7 +1,9 @@
 //! A recorded arm: what physics its log contains that its description leaves out.
 
 pub mod effect;
+pub mod estimate;
 pub mod evidence;
+pub mod extent;
 pub mod fit;
 pub mod hypothesis;
 pub mod input;

@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 
 use super::effect::{ArmEffect, Candidate, candidates};
 use super::evidence::Evidence;
+use super::extent::{changes, largest};
 use super::fit::{Columns, Scales, scales_of};
 use super::hypothesis::{Hypothesis, screen};
 use super::laws::laws;
@@ -21,6 +22,8 @@ const WORTH: f64 = 16.0;
 const UNNAMED: f64 = 35.0;
 /// Share of the first effect's gain below which a further one may be what its textbook form leaves [1].
 const REMAINDER: f64 = 0.01;
+/// Standard deviations of the noise by which an effect must move a channel somewhere [1].
+const SEEN: f64 = 2.0;
 /// Candidates that are fitted wholly at a stage.
 const FITTED: usize = 7;
 /// Effects at most.
@@ -65,14 +68,14 @@ pub fn search(evidence: &Evidence, observer: &mut dyn FnMut(usize)) -> Found {
     let listed = candidates(evidence.input);
     let mut best = nominal.clone();
     let mut stages: Vec<Vec<Tried>> = Vec::new();
-    let mut largest: f64 = 0.0;
+    let mut most: f64 = 0.0;
     for stage in 0..MOST {
         observer(stage);
         let tried = try_each(evidence, &best, &listed, &scales, &mut columns);
         let Some(first) = tried.first() else { break };
-        let accepted = first.worth > WORTH.max(REMAINDER * largest);
         let next = first.hypothesis.clone();
-        largest = largest.max(first.gain);
+        let accepted = first.worth > WORTH.max(REMAINDER * most) && is_seen(evidence, &next);
+        most = most.max(first.gain);
         stages.push(tried);
         if !accepted {
             break;
@@ -87,6 +90,15 @@ pub fn search(evidence: &Evidence, observer: &mut dyn FnMut(usize)) -> Found {
         scales,
         stages,
     }
+}
+
+/// Whether the last effect of a hypothesis moves some channel beyond its noise.
+fn is_seen(evidence: &Evidence, hypothesis: &Hypothesis) -> bool {
+    let last = &hypothesis.effects[hypothesis.effects.len() - 1..];
+    largest(
+        evidence,
+        &changes(evidence.input, &hypothesis.fit.arm, last),
+    ) > SEEN
 }
 
 /// Candidates beside a hypothesis, the promising ones fitted, best first.
