@@ -11,7 +11,7 @@ use super::inertia::merged_bodies;
 use super::masses::Masses;
 use super::mount::{self, Mount};
 use super::source::Source;
-use super::tree::Tree;
+use super::tree::{OF_A_CELL, Tree};
 use super::{ArmOptions, Refusal, collisions, refused};
 use crate::arm::chain::BodyInertia;
 
@@ -55,7 +55,7 @@ fn draft(source: &Source) -> Result<ArmDraft, Refusal> {
     let robot = &source.robot;
     let mount = mount::likely(robot)?;
     let tip = mount.flange_link.as_str();
-    let tree = Tree::build(robot, mount.base_link.as_deref(), tip, &mut Vec::new())?;
+    let tree = Tree::build(robot, mount.base_link.as_deref(), tip, OF_A_CELL, &mut Vec::new())?;
     let reach = reach(&tree);
     let mut options = ArmOptions {
         base_link: mount.base_link.clone(),

@@ -5,7 +5,7 @@ use glamx::DPose3;
 
 use super::Refusal;
 use super::graph::{Graph, kind_of};
-use super::tree::{Tree, unit_axis};
+use super::tree::{OF_A_CELL, Tree, unit_axis};
 use urdf_rs::{Joint, JointType, Link, Robot};
 
 /// Names that frames for tools usually have, the usual one first; names may have a robot's name before them.
@@ -33,7 +33,7 @@ pub(super) fn likely(robot: &Robot) -> Result<Mount, Refusal> {
             Err(refusal @ Refusal::Ring { .. }) => return Err(refusal),
             Err(_) => Some(graph.root_above(link)),
         };
-        let tree = Tree::build(robot, base.as_deref(), &link.name, &mut Vec::new())?;
+        let tree = Tree::build(robot, base.as_deref(), &link.name, OF_A_CELL, &mut Vec::new())?;
         Ok(Mount {
             rotation: turn(&tree)?,
             base_link: base,

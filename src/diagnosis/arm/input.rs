@@ -2,16 +2,7 @@
 
 use crate::recorded_arm::motion::Motion;
 use crate::recorded_arm::simulate::Channel;
-use crate::recorded_arm::{ArmParameters, Quantity};
-
-/// A number that is known within bounds: the truth lies anywhere between them.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tolerated {
-    /// The number.
-    pub quantity: Quantity,
-    /// Least and largest value [its unit].
-    pub bounds: [f64; 2],
-}
+use crate::recorded_arm::{ArmParameters, Tolerated};
 
 /// A recording of an arm.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,6 +22,8 @@ pub struct ArmInput {
     pub nominal: ArmParameters,
     /// Names of the links behind the joints, base first.
     pub links: Vec<String>,
+    /// Number of each joint in the names of columns and in answers, from 1, base first.
+    pub numbers: Vec<usize>,
     /// Numbers that are known within bounds; what is not among them is exact.
     pub tolerated: Vec<Tolerated>,
     /// Measured channels.
