@@ -131,7 +131,10 @@ impl Comparison {
                     |(name, joint): &&(String, Estimate)| name == JOINT && joint.value > 0.0;
                 let own = match effect.parameters.iter().find(of_joint) {
                     Some((_, joint)) => format!("{}_{}", effect.name, joint.value),
-                    None => effect.name.clone(),
+                    None => {
+                        let place = effect.parameters.place_words().replace(' ', "_");
+                        effect.name.clone() + &place
+                    }
                 };
                 let words = own.replace('_', " ");
                 let key = format!("{own}.probability");

@@ -200,7 +200,11 @@ fn column_order(
     chain: &KinematicChain,
     drives: &[&str],
 ) -> Result<Vec<usize>, ScenarioError> {
-    let all: Vec<&str> = chain.joints.iter().map(|joint| joint.name.as_str()).collect();
+    let all: Vec<&str> = chain
+        .joints
+        .iter()
+        .map(|joint| joint.name.as_str())
+        .collect();
     for (index, name) in drives.iter().enumerate() {
         let section = Section::new(document, format!("drive[{index}]"));
         if !all.contains(name) {

@@ -148,7 +148,7 @@ fn cases(folder: &Path, of_cell: bool) -> Result<Vec<String>, AppError> {
         let reason = if of_cell {
             "none in it has recordings"
         } else {
-            "none in it has a rig.toml"
+            "none in it has a rig.toml or an arm.toml"
         };
         return Err(refuse(reason.to_owned()));
     }

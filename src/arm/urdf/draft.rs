@@ -55,7 +55,13 @@ fn draft(source: &Source) -> Result<ArmDraft, Refusal> {
     let robot = &source.robot;
     let mount = mount::likely(robot)?;
     let tip = mount.flange_link.as_str();
-    let tree = Tree::build(robot, mount.base_link.as_deref(), tip, OF_A_CELL, &mut Vec::new())?;
+    let tree = Tree::build(
+        robot,
+        mount.base_link.as_deref(),
+        tip,
+        OF_A_CELL,
+        &mut Vec::new(),
+    )?;
     let reach = reach(&tree);
     let mut options = ArmOptions {
         base_link: mount.base_link.clone(),

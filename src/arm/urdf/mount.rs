@@ -33,7 +33,13 @@ pub(super) fn likely(robot: &Robot) -> Result<Mount, Refusal> {
             Err(refusal @ Refusal::Ring { .. }) => return Err(refusal),
             Err(_) => Some(graph.root_above(link)),
         };
-        let tree = Tree::build(robot, base.as_deref(), &link.name, OF_A_CELL, &mut Vec::new())?;
+        let tree = Tree::build(
+            robot,
+            base.as_deref(),
+            &link.name,
+            OF_A_CELL,
+            &mut Vec::new(),
+        )?;
         Ok(Mount {
             rotation: turn(&tree)?,
             base_link: base,

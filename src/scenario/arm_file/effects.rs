@@ -222,8 +222,7 @@ impl Read<'_> {
         let unit = Unit::of_key(key);
         value.ok_or_else(|| {
             let expected = format!("it to be given in {}", unit.symbol);
-            self.section
-                .missing(key, expected.trim_end_matches(" in "))
+            self.section.missing(key, expected.trim_end_matches(" in "))
         })
     }
 
@@ -242,7 +241,9 @@ impl Read<'_> {
             Some(EffectValue::Text(text)) => Ok(text),
             Some(other) => {
                 let expected = expected.to_owned();
-                Err(self.section.refuse(place.key(), other.to_string(), expected))
+                Err(self
+                    .section
+                    .refuse(place.key(), other.to_string(), expected))
             }
             None => Err(self.section.missing(place.key(), expected)),
         }
@@ -295,7 +296,8 @@ impl Read<'_> {
             "motor_inertia_error" => drive.motor_inertia = n("inertia_kg_m2")?,
             "drive_gain_error" => {
                 if !drive.logs_current {
-                    let reason = "the drive has no gain_n_m_per_a: its torque is logged, not its current";
+                    let reason =
+                        "the drive has no gain_n_m_per_a: its torque is logged, not its current";
                     return Err(self.section.misplaced(NAME, reason.to_owned()));
                 }
                 drive.inverse_gain = 1.0 / self.divisor("gain_n_m_per_a")?;
@@ -391,11 +393,7 @@ impl Read<'_> {
         }
         let keys = ["direction_x", "direction_y", "direction_z"];
         let [x, y, z] = keys.map(|key| self.optional(key));
-        let direction = DVec3::new(
-            x?.unwrap_or(0.0),
-            y?.unwrap_or(0.0),
-            z?.unwrap_or(0.0),
-        );
+        let direction = DVec3::new(x?.unwrap_or(0.0), y?.unwrap_or(0.0), z?.unwrap_or(0.0));
         // Without a direction it is down, as most that lies on something.
         let direction = direction.try_normalize().unwrap_or(-DVec3::Z);
         Ok(Push {

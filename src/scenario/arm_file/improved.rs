@@ -111,8 +111,7 @@ fn links(document: &mut DocumentMut, file: &ArmFile, arm: &ArmParameters) {
         let of_urdf = &file.bodies[index];
         let has = |key: &str| known.is_some_and(|place| has_key(document, "link", place, key));
         let mass = mass || (!has("mass_kg") && found.mass != of_urdf.mass);
-        let centre =
-            centre || (!has("centre_m") && found.centre_of_mass != of_urdf.centre_of_mass);
+        let centre = centre || (!has("centre_m") && found.centre_of_mass != of_urdf.centre_of_mass);
         if !(mass || centre) {
             continue;
         }
@@ -157,7 +156,9 @@ fn table_of(
     name: &str,
     is_it: impl Fn(&Table) -> bool,
 ) -> Option<usize> {
-    document.contains_key(name).then(|| tables(document, name))?;
+    document
+        .contains_key(name)
+        .then(|| tables(document, name))?;
     tables(document, name).iter().position(is_it)
 }
 
@@ -186,7 +187,11 @@ fn drives(document: &mut DocumentMut, file: &ArmFile, arm: &ArmParameters) {
             let [own, found] = [own, found].map(|drive| 1.0 / drive.inverse_gain);
             put("gain_n_m_per_a", own, found);
         }
-        put("motor_inertia_kg_m2", own.motor_inertia, found.motor_inertia);
+        put(
+            "motor_inertia_kg_m2",
+            own.motor_inertia,
+            found.motor_inertia,
+        );
         put("coulomb_friction_n_m", own.coulomb, found.coulomb);
         put("viscous_friction_n_m_s_per_rad", own.viscous, found.viscous);
         if found.bristle_length != own.bristle_length

@@ -234,12 +234,9 @@ pub(super) fn wrench(
     known: &mut Known,
 ) -> Result<WrenchSensor, ScenarioError> {
     let section = Section::new(document, "wrench_sensor");
-    let rotation = known.taken(
-        (&section, "rotation_z_rad"),
-        &keys.rotation,
-        ANGLE,
-        |_| Quantity::SensorRotation,
-    )?;
+    let rotation = known.taken((&section, "rotation_z_rad"), &keys.rotation, ANGLE, |_| {
+        Quantity::SensorRotation
+    })?;
     let mut zero = [0.0; 6];
     for (first, key, value) in [
         (0, "zero_force_n", &keys.zero_force),
@@ -302,16 +299,18 @@ pub(super) fn noise(
         }
     }
     let lacks = |logs_current: bool| arm.drives.iter().any(|d| d.logs_current == logs_current);
-    let [of_current, of_torque] = [(true, &keys.current), (false, &keys.torque)].map(|(is, list)| {
-        let other = if is { &keys.torque } else { &keys.current };
-        lacks(is) && list.is_none() && other.is_some()
-    });
+    let [of_current, of_torque] =
+        [(true, &keys.current), (false, &keys.torque)].map(|(is, list)| {
+            let other = if is { &keys.torque } else { &keys.current };
+            lacks(is) && list.is_none() && other.is_some()
+        });
     if of_current {
         let expected = "the noise of each drive's current: the drives have `gain_n_m_per_a`, so their currents are logged";
         return Err(section.missing("current_a", expected));
     }
     if of_torque {
-        let expected = "the noise of each drive's torque: drives without `gain_n_m_per_a` log torques";
+        let expected =
+            "the noise of each drive's torque: drives without `gain_n_m_per_a` log torques";
         return Err(section.missing("torque_n_m", expected));
     }
     let drives = arm.drives.iter().zip(numbers).map(|(drive, number)| {
