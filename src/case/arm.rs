@@ -29,8 +29,6 @@ pub(super) struct ArmCase {
     pub file: ArmFile,
     /// What a diagnosis is made of.
     pub input: ArmInput,
-    /// Column of each channel.
-    columns: Vec<String>,
     /// The recording to be predicted.
     unseen: Option<ArmRecording>,
     /// Remarks on the recordings.
@@ -80,13 +78,13 @@ impl ArmCase {
             recordings: recordings
                 .map(|(index, log)| log.recording(index, &only(&channels)))
                 .collect(),
+            columns: channels.iter().map(|(_, column)| column.clone()).collect(),
             channels: only(&channels),
             nominal,
         };
         check_currents(&file, &input, &logs)?;
         let all = names.iter().chain(file.predict.as_ref());
         Ok(Self {
-            columns: channels.iter().map(|(_, column)| column.clone()).collect(),
             notes: logs.iter().chain(&unseen).flat_map(ArmLog::notes).collect(),
             unseen: unseen.map(|log| log.recording(logs.len(), &input.channels)),
             sources: all.map(|name| (name.clone(), folder.join(name))).collect(),
@@ -140,7 +138,7 @@ impl ArmCase {
                 models.map(|arm| predicted(arm, &recording.motion, &self.input.channels));
             let nothing = || vec![f64::NAN; recording.motion.len()];
             let both = nominal.into_iter().zip(improved);
-            let channels = both.zip(&recording.readings).zip(&self.columns);
+            let channels = both.zip(&recording.readings).zip(&self.input.columns);
             let channels =
                 channels.map(
                     |(((nominal, improved), measured), column)| ComparedChannel {
@@ -180,7 +178,7 @@ impl ArmCase {
     }
 
     fn noise(&self) -> Vec<ChannelNoise> {
-        let pairs = self.columns.iter().zip(&self.input.noise);
+        let pairs = self.input.columns.iter().zip(&self.input.noise);
         pairs
             .map(|(column, noise)| ChannelNoise {
                 channel: column.clone(),

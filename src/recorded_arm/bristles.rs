@@ -25,6 +25,36 @@ pub fn bristles(position: &[f64], length: f64) -> Vec<f64> {
     out
 }
 
+/// Dry friction at each sample [N m] whose sliding value changes on the way: bristles of one stiffness, which a larger friction bends farther.
+///
+/// ```text
+/// dF/dq = s_0 (1 - F sign(q')/g),    s_0 = F_c/d
+/// ```
+///
+/// g sliding friction [N m], F_c what the length d is of [N m]. Source: Canudas de Wit et al., IEEE Transactions on Automatic Control 40 (1995), 419 (LuGre),
+/// without its micro-damping.
+#[must_use]
+pub fn varying(position: &[f64], sliding: &[f64], length: f64, coulomb: f64) -> Vec<f64> {
+    let mut force = 0.0;
+    let mut before = position.first().copied().unwrap_or(0.0);
+    let mut out = Vec::with_capacity(position.len());
+    for (now, sliding) in position.iter().zip(sliding) {
+        let moved = now - before;
+        if moved != 0.0 {
+            let aim = sliding * moved.signum();
+            let own = if coulomb > 0.0 {
+                length * (sliding / coulomb).abs().clamp(0.1, 10.0)
+            } else {
+                length
+            };
+            force = aim + (force - aim) * (-moved.abs() / own).exp();
+        }
+        before = *now;
+        out.push(force);
+    }
+    out
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -22,10 +22,22 @@ pub struct JointMoment {
     pub speed: f64,
     /// Acceleration [rad/s2].
     pub acceleration: f64,
-    /// Share of the sliding friction [1].
+    /// Share of the sliding friction that is reached [1].
     pub bristles: f64,
+    /// Dry friction, cold [N m].
+    pub dry: f64,
     /// Torque that the gear carries [N m].
     pub carried: f64,
+}
+
+/// Dry friction of a joint that slides, cold [N m].
+#[must_use]
+pub fn sliding(drive: &Drive, speed: f64, carried: f64) -> f64 {
+    let mut dry = drive.coulomb + drive.load_friction * carried.abs();
+    if drive.static_excess != 0.0 {
+        dry += drive.static_excess * (-(speed / drive.stribeck_velocity).powi(2)).exp();
+    }
+    dry
 }
 
 /// Torque that a drive must give beside what its gear carries [N m].
@@ -37,16 +49,12 @@ pub fn own_torque(drive: &Drive, moment: &JointMoment) -> f64 {
         acceleration,
         ..
     } = *moment;
-    let mut dry = drive.coulomb + drive.load_friction * moment.carried.abs();
-    if drive.static_excess != 0.0 {
-        dry += drive.static_excess * (-(speed / drive.stribeck_velocity).powi(2)).exp();
-    }
     let mut warm = 1.0;
     if drive.warm_fraction != 0.0 {
         warm -= drive.warm_fraction * (1.0 - (-moment.time / drive.warm_time).exp());
     }
     let mut torque = drive.motor_inertia * acceleration
-        + warm * (dry * moment.bristles + drive.viscous * speed)
+        + warm * (moment.dry + drive.viscous * speed)
         + drive.offset
         + drive.spring_stiffness * position;
     if drive.ripple != [0.0; 2] {
@@ -77,6 +85,7 @@ mod tests {
             speed,
             acceleration: 0.0,
             bristles: 1.0,
+            dry: sliding(&drive, speed, 0.0),
             carried: 0.0,
         };
         assert!((own_torque(&drive, &moment(0.0, 0.0)) - 6.0).abs() < 1e-12);

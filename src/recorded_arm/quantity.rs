@@ -75,6 +75,8 @@ pub enum Quantity {
     PushStart(usize),
     /// End of a push [s].
     PushEnd(usize),
+    /// Share of a push's duration over which it grows [1].
+    PushEdge(usize),
     /// Factor of a law, first or second.
     LawAmplitude(usize, usize),
     /// Place of a law.
@@ -108,6 +110,7 @@ impl Quantity {
             }
             Self::PushStart(index) => return arm.pushes.get_mut(index).map(|p| &mut p.start),
             Self::PushEnd(index) => return arm.pushes.get_mut(index).map(|p| &mut p.end),
+            Self::PushEdge(index) => return arm.pushes.get_mut(index).map(|p| &mut p.edge),
             _ => {}
         }
         let wrench = arm.wrench.as_mut();

@@ -1,10 +1,10 @@
 //! Readings of a recorded arm along a measured motion.
 
-use super::bristles::bristles;
+use super::bristles::{bristles, varying};
 use super::delay::delayed;
-use super::drive::{JointMoment, own_torque};
+use super::drive::{JointMoment, own_torque, sliding};
 use super::motion::Motion;
-use super::parameters::ArmParameters;
+use super::parameters::{ArmParameters, Drive};
 use crate::arm::chain::MAX_JOINTS;
 use crate::arm::dynamics::{LinkMotion, inverse_dynamics, tip_motion};
 use crate::arm::kinematics::{link_poses, point_force_torques};
@@ -131,17 +131,26 @@ pub fn all_bristles(arm: &ArmParameters, motion: &Motion) -> Vec<Vec<f64>> {
 
 /// Moments of a joint along a motion.
 pub fn moments<'a>(
+    drive: &Drive,
     motion: &'a Motion,
     bristles: &'a [Vec<f64>],
     carried: &'a [Vec<f64>],
     joint: usize,
 ) -> impl Iterator<Item = JointMoment> + 'a {
+    let (coulomb, length) = (drive.coulomb, drive.bristle_length);
+    let varies = drive.static_excess != 0.0 || drive.load_friction != 0.0;
+    let dry = varies.then(|| {
+        let pairs = motion.speed[joint].iter().zip(&carried[joint]);
+        let sliding: Vec<f64> = pairs.map(|(v, t)| sliding(drive, *v, *t)).collect();
+        varying(&motion.position[joint], &sliding, length, coulomb)
+    });
     (0..motion.len()).map(move |i| JointMoment {
         time: motion.time[i] - motion.time[0],
         position: motion.position[joint][i],
         speed: motion.speed[joint][i],
         acceleration: motion.acceleration[joint][i],
         bristles: bristles[joint][i],
+        dry: dry.as_ref().map_or(coulomb * bristles[joint][i], |d| d[i]),
         carried: carried[joint][i],
     })
 }
@@ -169,7 +178,7 @@ pub fn readings(
                 }
                 torque * drive.inverse_gain
             };
-            let all: Vec<f64> = moments(motion, bristles, &rigid.carried, joint)
+            let all: Vec<f64> = moments(drive, motion, bristles, &rigid.carried, joint)
                 .enumerate()
                 .map(torque)
                 .collect();

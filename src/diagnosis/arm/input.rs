@@ -28,6 +28,8 @@ pub struct ArmInput {
     pub tolerated: Vec<Tolerated>,
     /// Measured channels.
     pub channels: Vec<Channel>,
+    /// Name of each channel's column.
+    pub columns: Vec<String>,
     /// Standard deviation of the noise of each channel [its unit].
     pub noise: Vec<f64>,
     /// Recordings to diagnose from.

@@ -1,6 +1,16 @@
 //! A recorded arm: what physics its log contains that its description leaves out.
 
 pub mod diagnosed;
+pub mod effect;
+pub mod estimate;
+pub mod evidence;
+pub mod extent;
+pub mod fit;
+pub mod hypothesis;
 pub mod input;
+pub mod laws;
+pub mod pushed;
+pub mod quadratic;
+pub mod search;
 
 pub use diagnosed::{ArmDiagnosis, diagnose};
