@@ -28,7 +28,7 @@ mod said_tests;
 mod tests;
 
 pub use arm::{Arm, ArmOptions, CollisionShape, EstimatedMass, LimitOverride, Visual, VisualShape};
-pub use draft::{ArmDraft, draft_of};
+pub use draft::{ArmDraft, draft_of, mount_of_recorded};
 pub use error::{ArmError, Refusal};
 pub use mount::Mount;
 

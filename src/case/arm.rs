@@ -380,3 +380,41 @@ pub fn predict_arm(file: &ArmFile, path: &Path) -> Result<ArmPrediction, CaseErr
         notes: log.notes(),
     })
 }
+
+/// A log of a case, for people.
+pub struct LogSummary {
+    /// Its name.
+    pub name: String,
+    /// Whether it is to be predicted.
+    pub unseen: bool,
+    /// Number of samples.
+    pub samples: usize,
+    /// Its duration [s].
+    pub duration: f64,
+    /// Columns that were measured.
+    pub measured: Vec<String>,
+}
+
+/// The logs of a folder, read as a diagnosis would, with remarks on them.
+///
+/// # Errors
+/// What is wrong with file or logs.
+pub fn logs_of(folder: &Path) -> Result<(Vec<LogSummary>, Vec<String>), CaseError> {
+    let case = ArmCase::from_folder(folder)?;
+    let all = case.input.recordings.iter().map(|r| (r, false));
+    let all = all.chain(case.unseen.iter().map(|r| (r, true)));
+    let summaries = all.map(|(recording, unseen)| {
+        let time = &recording.motion.time;
+        let ends = time.first().zip(time.last());
+        let channels = case.input.columns.iter().zip(&recording.readings);
+        let measured = channels.filter(|(_, values)| values.iter().any(|v| v.is_finite()));
+        LogSummary {
+            name: recording.name.clone(),
+            unseen,
+            samples: time.len(),
+            duration: ends.map_or(0.0, |(first, last)| last - first),
+            measured: measured.map(|(column, _)| column.clone()).collect(),
+        }
+    });
+    Ok((summaries.collect(), case.notes))
+}

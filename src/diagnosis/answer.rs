@@ -28,6 +28,7 @@ use super::formula::unlisted::report::UnlistedReport;
 use crate::effects::UNLISTED;
 use crate::effects::meaning;
 use crate::plant::LawText;
+use crate::recorded_arm::vocabulary::arm_effect;
 use crate::recording::RecordingError;
 use crate::recording::atomic::write_text;
 
@@ -154,6 +155,11 @@ impl FoundEffect {
         }
         if let Some(key) = &self.key {
             return format!("{key} is another than the rig file says");
+        }
+        // Joints of a cell have effects of the same name with a meaning of their own.
+        let of_arm = arm_effect(&self.name).filter(|effect| effect.subsystem == self.subsystem);
+        if let Some(effect) = of_arm {
+            return effect.meaning.to_owned() + &self.parameters.place_words();
         }
         let own = self.law.as_ref().map(FoundLaw::words);
         own.unwrap_or_else(|| meaning(&self.name).to_owned())

@@ -132,8 +132,9 @@ impl Comparison {
                 let own = match effect.parameters.iter().find(of_joint) {
                     Some((_, joint)) => format!("{}_{}", effect.name, joint.value),
                     None => {
-                        let place = effect.parameters.place_words().replace(' ', "_");
-                        effect.name.clone() + &place
+                        let place = effect.parameters.place.iter();
+                        let place = place.map(|(key, place)| format!("_{key}_{place}"));
+                        effect.name.clone() + &place.collect::<String>()
                     }
                 };
                 let words = own.replace('_', " ");

@@ -55,7 +55,7 @@ impl Parameters {
         Self { place, numbers }
     }
 
-    /// The place in words, as in ` of joint 2`; empty where there is none.
+    /// The place in words, as in ` (joint 2)`, to stand behind a name; empty where there is none.
     #[must_use]
     pub fn place_words(&self) -> String {
         let words = self.place.iter().map(|(key, place)| match place {
@@ -64,7 +64,7 @@ impl Parameters {
         });
         match words.collect::<Vec<_>>().join(" to ") {
             none if none.is_empty() => none,
-            words => format!(" of {words}"),
+            words => format!(" ({words})"),
         }
     }
 }
@@ -166,6 +166,6 @@ mod tests {
             "{text}"
         );
         assert_eq!(serde_json::from_str::<Parameters>(&text).unwrap(), written);
-        assert_eq!(written.place_words(), " of joint 2");
+        assert_eq!(written.place_words(), " (joint 2)");
     }
 }

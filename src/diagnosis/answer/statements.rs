@@ -173,6 +173,9 @@ fn of_effect(effect: &FoundEffect, headline: &str) -> Vec<String> {
     let joint = effect.parameters.iter().find(|(key, _)| key == "joint");
     let named = match joint {
         Some((_, joint)) => headline.contains(&format!("{name} (joint {})", joint.value)),
+        None if !effect.parameters.place.is_empty() => {
+            headline.contains(&format!("{name}{}", effect.parameters.place_words()))
+        }
         None => headline
             .split(|c: char| !(c.is_alphanumeric() || c == '_'))
             .any(|word| word == name),
