@@ -47,6 +47,7 @@ mod pointed;
 mod predict;
 mod program;
 mod real_robots;
+mod recorded_arm;
 mod recorded_cell;
 mod removal;
 mod removal_table;

@@ -9,9 +9,10 @@ use crate::common::project;
 
 /// Set, the schemas are written anew.
 const UPDATE: &str = "IDC_UPDATE_SCHEMAS";
-const KINDS: [&str; 6] = [
+const KINDS: [&str; 7] = [
     "scenario",
     "rig",
+    "arm",
     "import",
     "study",
     "device",
@@ -96,6 +97,7 @@ fn shipped(kind: &str) -> Vec<PathBuf> {
             ]
             .concat()
         }
+        "arm" => one("tests/recorded_arm.toml"),
         "import" => [
             tomls("assets/import"),
             one("assets/new/import.toml"),
@@ -249,6 +251,24 @@ fn slips_of_the_pen_are_not() {
             "bore_mm = 320",
         ),
         (
+            "arm",
+            "tests/recorded_arm.toml",
+            "gain_n_m_per_a",
+            "gain_nm_per_a",
+        ),
+        (
+            "arm",
+            "tests/recorded_arm.toml",
+            "value = 11.0, tolerance",
+            "value = 11.0, tolerence",
+        ),
+        (
+            "arm",
+            "tests/recorded_arm.toml",
+            "link_mass_tolerance = 0.03",
+            "link_mass_tolerance = 3",
+        ),
+        (
             "removal_table",
             "assets/new/removal_table.toml",
             "fit = ",
@@ -324,6 +344,7 @@ fn keys_are_described() {
     for (name, schema) in [
         ("cell", &scenario["else"]["else"]),
         ("bench", &scenario["then"]),
+        ("arm", &printed("arm")),
         ("import", &printed("import")),
         ("study", &printed("study")),
         ("removal_table", &printed("removal_table")),

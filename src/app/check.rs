@@ -1,5 +1,6 @@
 //! `idc check`: what a file describes and what would be done with it, without doing it.
 
+mod arm;
 mod bench;
 mod cell;
 mod removal_table;
@@ -16,8 +17,9 @@ use super::advice::AdviceArguments;
 use super::error::{AppError, ExitCode};
 use super::files::{OverwritePolicy, prepare_file};
 use super::output::say;
-use crate::case::RIG;
+use crate::case::{RIG, is_arm_case};
 use crate::recording::atomic::write_text;
+use crate::scenario::arm_file::is_arm_file;
 use crate::scenario::removal_table::is_removal_table;
 use crate::scenario::{self, AnyScenario, ScenarioError, ScenarioTemplate};
 
@@ -42,7 +44,7 @@ Examples:
 
 #[derive(Debug, Args)]
 pub(super) struct CheckArguments {
-    /// Scenario, rig file, table of runs, import map, study or device model; or a folder with rig.toml and its recordings.
+    /// Scenario, rig file, recorded arm, table of runs, import map, study or device model; or a folder with rig.toml or arm.toml and its recordings.
     pub(super) file: PathBuf,
     /// SVG file for a drawing of how a cell's tool stands across its edge.
     #[arg(long, value_name = "FILE", help_heading = "Output")]
@@ -94,6 +96,9 @@ fn explained(file: &Path) -> Result<Report, AppError> {
         if is_removal_table(&file.join(RIG)) {
             return removal_table::removal_table(file);
         }
+        if is_arm_case(file) {
+            return arm::case(file);
+        }
         return rig::case(file);
     }
     if file
@@ -130,6 +135,9 @@ fn explained(file: &Path) -> Result<Report, AppError> {
     }
     if is_removal_table(file) {
         return removal_table::removal_table(file);
+    }
+    if is_arm_file(file) {
+        return arm::arm(file);
     }
     match scenario::load_any(file) {
         Ok(AnyScenario::Cell(cell)) => cell::cell(*cell),

@@ -275,6 +275,29 @@ pub enum AppError {
         /// The kind of file.
         kind: &'static str,
     },
+    /// A log of an arm for another kind of file.
+    #[error("--log is for a recorded arm, a {kind} has none (an import map takes --from)")]
+    OfAnArm {
+        /// The kind of file.
+        kind: &'static str,
+    },
+    /// A recorded arm without a description of its links.
+    #[error(
+        "idc new arm: --urdf is missing, expected the URDF file of the arm, as its maker gives it"
+    )]
+    NoUrdf,
+    /// A log in which no column is of a joint.
+    #[error(
+        "{file}: no column is joint_1_rad, expected positions of joints as joint_N_rad beside time_s (it has {columns}); `{import}` drafts a map that makes such columns"
+    )]
+    NoJoints {
+        /// The log.
+        file: String,
+        /// Its columns.
+        columns: String,
+        /// Command that helps.
+        import: String,
+    },
     /// A drawing of the tool of what has none.
     #[error("{file} has no tool on an edge to draw, expected a cell that is simulated with --draw")]
     NoTool {

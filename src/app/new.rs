@@ -2,6 +2,7 @@
 
 mod arm;
 mod part;
+mod recorded_arm;
 
 use std::path::{Path, PathBuf};
 
@@ -36,6 +37,8 @@ Examples:
   # An import map by looking at logs: what it tells of them and how sure it is
   # stands in its comments, and what it asks for.
   idc new import runs/mine/looked.toml --from assets/first/stairs.csv
+  # A recorded arm, from its URDF; with --log what a log of it shows, too.
+  idc new arm runs/mine/arm/arm.toml --urdf models/arm/arm10.urdf
   # Each can be checked.
   idc check runs/mine/rig.toml";
 
@@ -62,9 +65,12 @@ pub(super) struct NewArguments {
     /// Logs for the map to be drafted by looking at them: text, .parquet, .mat, .mcap, .db3 or a bag's folder. A last one that ends in .toml is FILE.
     #[arg(long, value_name = "LOG", num_args = 1.., help_heading = "Input")]
     from: Vec<PathBuf>,
-    /// URDF or xacro file of the arm of a cell, in place of the one that comes with the program. Masses and limits that it lacks are estimated, marked so in the file; a device that it can carry is chosen, and the part put where it reaches.
+    /// URDF or xacro file of a recorded arm; or of the arm of a cell, in place of the one that comes with the program. Masses and limits that it lacks are estimated, marked so in the file; a device that it can carry is chosen, and the part put where it reaches.
     #[arg(long, value_name = "FILE", help_heading = "Input")]
     urdf: Option<PathBuf>,
+    /// Log of a recorded arm: its rate, its noise, and whether it holds currents or torques.
+    #[arg(long, value_name = "CSV", requires = "urdf", help_heading = "Input")]
+    log: Option<PathBuf>,
     /// Mesh of the part of a cell, in place of the plate: its longest edge that the tool can ride is chosen, and the part put where the robot reaches it.
     #[arg(long, value_name = "FILE", help_heading = "Input")]
     part: Option<PathBuf>,
@@ -93,6 +99,8 @@ enum Kind {
     Cell,
     /// A rig file: a device by its nominal values.
     Rig,
+    /// A recorded arm: links by its URDF, drives, load and sensors.
+    Arm,
     /// An import map: what the columns of a log are.
     Import,
     /// A table of runs: what a tool took off at which settings.
@@ -105,6 +113,7 @@ impl Kind {
         match self {
             Self::Cell => "cell",
             Self::Rig => "rig",
+            Self::Arm => "arm",
             Self::Import => "import",
             Self::RemovalTable => REMOVAL_TABLE,
         }
@@ -114,6 +123,8 @@ impl Kind {
         match self {
             Self::Cell => include_str!("../../assets/new/cell.toml"),
             Self::Rig => include_str!("../../assets/new/rig.toml"),
+            // Made of its URDF.
+            Self::Arm => "",
             Self::Import => include_str!("../../assets/new/import.toml"),
             Self::RemovalTable => include_str!("../../assets/new/removal_table.toml"),
         }
@@ -129,7 +140,7 @@ impl Kind {
         let file = word(file);
         match self {
             Self::Cell => format!("idc run {file}"),
-            Self::Rig => format!("idc check {file}"),
+            Self::Rig | Self::Arm => format!("idc check {file}"),
             Self::Import => format!("idc import {file} LOG.csv"),
             Self::RemovalTable if is_case => format!("idc diagnose {folder}"),
             Self::RemovalTable => format!("idc check {file}"),
@@ -162,17 +173,15 @@ pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
         [] => None,
         logs => Some(draft(&stem.replace('_', " "), logs)?),
     };
-    let own = [("--urdf", &arguments.urdf), ("--part", &arguments.part)];
-    if let Some((option, _)) = own.iter().find(|(_, given)| given.is_some())
-        && !matches!(kind, Kind::Cell)
-    {
-        return Err(AppError::OfACell {
-            option,
-            kind: kind.name(),
-        });
-    }
+    check_options(arguments)?;
     let (files, of_arm) = match &drafted {
-        None => with_own(files(kind, &file), &file, arguments)?,
+        None => match (kind, &arguments.urdf) {
+            (Kind::Arm, Some(urdf)) => {
+                let (text, said) = recorded_arm::text(urdf, arguments.log.as_deref(), &file)?;
+                (vec![(file.clone(), text.into_bytes())], said)
+            }
+            _ => with_own(files(kind, &file), &file, arguments)?,
+        },
         Some(draft) => {
             let text = draft.text.clone().into_bytes();
             (vec![(file.clone(), text)], String::new())
@@ -208,6 +217,30 @@ pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
         &next,
     )?;
     Ok(ExitCode::Done)
+}
+
+/// Refuses options of another kind of file, and an arm without its URDF.
+fn check_options(arguments: &NewArguments) -> Result<(), AppError> {
+    let kind = arguments.kind;
+    let refuse = |option| {
+        Err(AppError::OfACell {
+            option,
+            kind: kind.name(),
+        })
+    };
+    match kind {
+        Kind::Cell | Kind::Arm => {}
+        _ if arguments.urdf.is_some() => return refuse("--urdf"),
+        _ if arguments.part.is_some() => return refuse("--part"),
+        _ => {}
+    }
+    match kind {
+        Kind::Arm if arguments.part.is_some() => refuse("--part"),
+        Kind::Arm if arguments.urdf.is_none() => Err(AppError::NoUrdf),
+        Kind::Arm => Ok(()),
+        _ if arguments.log.is_some() => Err(AppError::OfAnArm { kind: kind.name() }),
+        _ => Ok(()),
+    }
 }
 
 /// Prints what was written, and what was found of logs or of an arm.

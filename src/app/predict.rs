@@ -12,7 +12,8 @@ use super::files::{OverwritePolicy, is_same, prepare_file};
 use super::output::say;
 use super::progress;
 use crate::case::{
-    check_finite, predict_flange_run, predict_table, predicted_by, read_rig, shown_columns,
+    check_finite, predict_arm, predict_flange_run, predict_table, predicted_by, read_rig,
+    shown_columns,
 };
 use crate::diagnosis::answer::details::UnknownGround;
 use crate::diagnosis::answer::words::of_column;
@@ -24,12 +25,13 @@ use crate::plant::Channel;
 use crate::quantity::{counted, significant};
 use crate::recording::atomic::write_text;
 use crate::recording::csv::columns_text;
+use crate::scenario::arm_file::{ArmFile, is_arm_file, load_arm_file};
 use crate::scenario::removal_table::is_removal_table;
 use crate::scenario::rig_file::{RigFile, load_rig};
 
 #[derive(Debug, Args)]
 pub(super) struct PredictArguments {
-    /// Rig file.
+    /// Rig file, or file of a recorded arm.
     rig: PathBuf,
     /// Recordings whose inputs drive the rig; what they hold of measured columns is compared.
     #[arg(required = true, value_name = "INPUTS")]
@@ -66,6 +68,10 @@ pub(super) fn predict(arguments: &PredictArguments) -> Result<ExitCode, AppError
     let all = arguments.inputs.iter().zip(outs);
     let made: Vec<Made> = if is_removal_table(&arguments.rig) {
         let made = all.map(|(inputs, out)| of_table(&arguments.rig, inputs, out));
+        made.collect::<Result<_, _>>()?
+    } else if is_arm_file(&arguments.rig) {
+        let arm = load_arm_file(&arguments.rig)?;
+        let made = all.map(|(inputs, out)| of_arm(&arm, inputs, out));
         made.collect::<Result<_, _>>()?
     } else {
         let rig = load_rig(&arguments.rig)?;
@@ -157,7 +163,7 @@ fn of_recording(rig: &RigFile, inputs: &Path, out: PathBuf) -> Result<Made, AppE
     let cleaning = clean::<Device>(time, &mut taken.readings, &rig.noise, &rig.plant);
     let mut notes = cleaning.account::<Device>(&rig.noise);
     notes.extend(UnknownGround::words(&file, &of_model.unknown));
-    let off: Vec<Error> = (0..COLUMNS.len())
+    let off: Vec<Error<'_>> = (0..COLUMNS.len())
         .filter_map(|channel| {
             let [measured, predicted] = [&taken.readings[channel], &predicted[channel]];
             let noise = rig.noise[channel];
@@ -182,6 +188,39 @@ fn of_recording(rig: &RigFile, inputs: &Path, out: PathBuf) -> Result<Made, AppE
         }),
         out,
         csv,
+    })
+}
+
+/// Predicts what the sensors of a recorded arm read.
+fn of_arm(arm: &ArmFile, inputs: &Path, out: PathBuf) -> Result<Made, AppError> {
+    let file = inputs.display().to_string();
+    let predicted = predict_arm(arm, inputs)?;
+    let columns = predicted.columns.iter();
+    let columns: Vec<(&str, &[f64])> = columns
+        .map(|column| (column.name.as_str(), column.predicted.as_slice()))
+        .collect();
+    let errors = predicted.columns.iter().filter_map(|column| {
+        Some(Error {
+            column: &column.name,
+            rms: whitened(&column.measured, &column.predicted, column.noise)?,
+            noise: column.noise,
+        })
+    });
+    let off: Vec<Error<'_>> = errors.collect();
+    let rms: BTreeMap<&str, f64> = off.iter().map(|e| (e.column, e.rms)).collect();
+    let samples = predicted.time.len();
+    Ok(Made {
+        csv: columns_text(&predicted.time, &columns)?,
+        said: text(&out, samples, &predicted.notes, &off),
+        document: serde_json::json!({
+            "arm": arm.path.display().to_string(),
+            "inputs": file,
+            "prediction": out.display().to_string(),
+            "samples": samples,
+            "notes": predicted.notes,
+            "rms_in_standard_deviations_of_noise": rms,
+        }),
+        out,
     })
 }
 
@@ -264,8 +303,8 @@ fn of_table(rig: &Path, inputs: &Path, out: PathBuf) -> Result<Made, AppError> {
 }
 
 /// Error of the prediction of a column.
-struct Error {
-    column: &'static str,
+struct Error<'a> {
+    column: &'a str,
     /// Root mean square over the noise [1].
     rms: f64,
     /// Standard deviation of the sensor's noise, in the column's unit.
@@ -273,7 +312,7 @@ struct Error {
 }
 
 /// Printed text on columns with their errors in standard deviations of the noise.
-fn text(out: &Path, samples: usize, notes: &[String], off: &[Error]) -> String {
+fn text(out: &Path, samples: usize, notes: &[String], off: &[Error<'_>]) -> String {
     let mut text = String::new();
     // Writing into a text cannot fail.
     for sentence in notes {

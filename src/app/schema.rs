@@ -36,6 +36,8 @@ enum File {
     Scenario,
     /// A rig file.
     Rig,
+    /// A recorded arm.
+    Arm,
     /// An import map.
     Import,
     /// A design study.
@@ -52,6 +54,7 @@ impl File {
         match self {
             Self::Scenario => with_metrics(scenario::schema::scenario()),
             Self::Rig => scenario::schema::rig(),
+            Self::Arm => scenario::arm_file::schema(),
             Self::Import => import::map_file::schema(),
             Self::Study => design::schema(),
             Self::Device => scenario::schema::device(),

@@ -28,16 +28,16 @@ mod said_tests;
 mod tests;
 
 pub use arm::{Arm, ArmOptions, CollisionShape, EstimatedMass, LimitOverride, Visual, VisualShape};
-pub use draft::{ArmDraft, draft_of};
+pub use draft::{ArmDraft, draft_of, mount_of_recorded};
 pub use error::{ArmError, Refusal};
 pub use mount::Mount;
 
-use crate::arm::chain::KinematicChain;
+use crate::arm::chain::{KinematicChain, MAX_JOINTS};
 use glamx::DPose3;
 use masses::Masses;
 use source::Source;
 use std::path::Path;
-use tree::Tree;
+use tree::{OF_A_CELL, Tree};
 
 /// Loads the arm in the URDF file `path`.
 ///
@@ -76,6 +76,10 @@ fn assemble(source: &Source, options: &ArmOptions) -> Result<Arm, Refusal> {
         &source.robot,
         options.base_link.as_deref(),
         &options.tip_link,
+        match options.is_recorded {
+            true => 1..=MAX_JOINTS,
+            false => OF_A_CELL,
+        },
         &mut notes,
     )?;
     check_loops(&tree, source, &mut notes)?;
@@ -107,7 +111,9 @@ fn assemble(source: &Source, options: &ArmOptions) -> Result<Arm, Refusal> {
     for (moving, body) in tree.moving.iter().zip(bodies) {
         joints.push(joints::path_joint(moving, body, options, &mut notes)?);
     }
-    if let Some(angle) = mount::askew(&tree, options.tip_from_mount)? {
+    if let Some(angle) = mount::askew(&tree, options.tip_from_mount)?
+        && !options.is_recorded
+    {
         notes.push(format!(
             "the device is mounted {:.0} degrees off the outward axis of the last joint, along z of link `{}`; arm.flange_rotation_deg turns it, and `idc new cell --urdf` finds by how much",
             angle.to_degrees(),

@@ -43,6 +43,46 @@ pub enum CaseError {
         /// The case's folder.
         folder: String,
     },
+    /// A law that a user tries on a recorded arm.
+    #[error(
+        "--try: {folder} is of a recorded arm; expected a case with a device or a part of one ([[law]] in arm.toml states a law at a joint)"
+    )]
+    TriedOnArm {
+        /// The case's folder.
+        folder: String,
+    },
+    /// A log of an arm that is too short.
+    #[error(
+        "{file}: {found} samples are too few to diagnose an arm from, expected at least {least}: record longer, or leave it out of `recordings.fit`"
+    )]
+    ShortLog {
+        /// The log.
+        file: String,
+        /// Its samples.
+        found: usize,
+        /// Least number.
+        least: usize,
+    },
+    /// Logs of an arm in which no joint turns back.
+    #[error(
+        "{file}: it is shorter than a period of its motion, as no joint turns back in it or in any other recording; expected motion to and fro, without which friction and load look alike"
+    )]
+    NoPeriod {
+        /// The log.
+        file: String,
+    },
+    /// Torques in columns of currents.
+    #[error(
+        "{file}: column `{column}` is {times:.1} times the current that the nominal arm takes, expected about that current: it looks like a torque; name such columns joint_N_torque_n_m and leave `gain_n_m_per_a` out of the drives"
+    )]
+    TorquesAsCurrents {
+        /// The log.
+        file: String,
+        /// The column.
+        column: String,
+        /// Its size over the nominal current.
+        times: f64,
+    },
     /// A case of a cell without a recording to diagnose from.
     #[error(
         "{folder}: no recording in it has a measured column, expected at least one to diagnose from"
@@ -63,7 +103,7 @@ pub enum CaseError {
     },
     /// A folder without a rig file.
     #[error(
-        "{folder} holds no rig.toml; expected a folder with one and the recordings that it names (--all takes a folder of such folders)"
+        "{folder} holds no rig.toml or arm.toml; expected a folder with one and the recordings that it names (--all takes a folder of such folders)"
     )]
     NoRig {
         /// The folder.

@@ -1,6 +1,8 @@
 //! A case of a diagnosis: a folder with recordings, and the nominal model of what they were recorded from.
 
+mod arm;
 mod arm_prediction;
+mod arm_recording;
 mod band;
 mod cell;
 mod cell_account;
@@ -16,6 +18,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
+pub use arm::{ARM, ArmPrediction, LogSummary, PredictedColumn, arm_of, logs_of, predict_arm};
 pub use band::{Predicted, predicted_by};
 pub use cell::is_cell_case;
 pub use error::CaseError;
@@ -50,6 +53,7 @@ use crate::replay::LoadedCell;
 use crate::scenario::files_of_cell;
 use crate::scenario::recorded_cell::improved_cell_text;
 use crate::scenario::rig_file::{Improved, Known, RigFile, from_text, improved_text};
+use arm::ArmCase;
 use cell::CellCase;
 use rig::MeasuredRun;
 
@@ -80,6 +84,8 @@ enum Kind {
         runs: Vec<MeasuredRun>,
         unseen: Option<Box<MeasuredRun>>,
     },
+    /// A recorded arm.
+    Arm(Box<ArmCase>),
 }
 
 /// Result of a diagnosis, with the files that it comes to.
@@ -92,18 +98,28 @@ pub struct Diagnosed {
     pub prediction: Option<String>,
     /// Recordings beside models.
     pub comparison: Comparison,
-    /// The search with all its explanations; none of a contact flange.
+    /// The search with all its explanations; none of a contact flange or an arm.
     pub diagnosis: Option<Diagnosis>,
-    /// The improved model; none of a contact flange.
+    /// The improved model; none of a contact flange or an arm.
     pub plant: Option<PlantParameters>,
 }
 
+/// Whether a folder holds a recorded arm.
+#[must_use]
+pub fn is_arm_case(folder: &Path) -> bool {
+    !folder.join(RIG).is_file() && folder.join(ARM).is_file()
+}
+
 impl Case {
-    /// Reads a folder with a rig.toml and the recordings that it names.
+    /// Reads a folder with a rig.toml or an arm.toml and the recordings that it names.
     ///
     /// # Errors
     /// A folder that holds none, or what is wrong with rig file or recordings.
     pub fn from_folder(folder: &Path) -> Result<Self, CaseError> {
+        if is_arm_case(folder) {
+            let case = Box::new(ArmCase::from_folder(folder)?);
+            return Ok(Self::new(folder, Kind::Arm(case)));
+        }
         let rig = Box::new(rig_of(folder)?);
         if rig.plant.parts == DeviceParts::ContactFlange {
             let (runs, unseen) = rig::flange_runs(&rig, folder)?;
@@ -179,6 +195,11 @@ impl Case {
                     folder: self.folder.display().to_string(),
                 });
             }
+            Kind::Arm(_) => {
+                return Err(CaseError::TriedOnArm {
+                    folder: self.folder.display().to_string(),
+                });
+            }
         };
         check_in_recordings(&law, input)?;
         let mut own = OwnLaw::new(&Arc::new(law));
@@ -218,13 +239,13 @@ impl Case {
         }
     }
 
-    /// Inputs of the search; none of a contact flange.
+    /// Inputs of the search; none of a contact flange or an arm.
     #[must_use]
     pub fn input(&self) -> Option<&DiagnosisInput> {
         match &self.kind {
             Kind::Rig { input, .. } => Some(input),
             Kind::Cell { read, .. } => Some(&read.input),
-            Kind::Flange { .. } => None,
+            Kind::Flange { .. } | Kind::Arm(_) => None,
         }
     }
 
@@ -232,6 +253,7 @@ impl Case {
         match &self.kind {
             Kind::Rig { rig, .. } | Kind::Flange { rig, .. } => (RIG.to_owned(), rig.path.clone()),
             Kind::Cell { .. } => (RIG.to_owned(), self.folder.join(RIG)),
+            Kind::Arm(case) => (ARM.to_owned(), case.file.path.clone()),
         }
     }
 
@@ -248,6 +270,11 @@ impl Case {
         if let Kind::Flange { runs, unseen, .. } = &self.kind {
             let all = runs.iter().chain(unseen.as_deref());
             sources.extend(all.map(|(run, _)| within(&run.name)));
+        }
+        if let Kind::Arm(case) = &self.kind {
+            let urdf = case.file.urdf.clone();
+            sources.push((urdf.display().to_string(), urdf));
+            sources.extend(case.sources.iter().cloned());
         }
         // Of a run of this program the recording is a file in the folder that it is called by.
         let recordings = self
@@ -316,6 +343,7 @@ pub fn diagnose(
             diagnosed
         }
         Kind::Flange { rig, runs, unseen } => of_flange_runs(rig, runs, unseen.as_deref(), start)?,
+        Kind::Arm(case) => case.diagnosed(start)?,
     };
     diagnosed.answer.details.case.clone_from(&case.name);
     diagnosed.answer.details.provenance = provenance;

@@ -44,8 +44,18 @@ pub fn rig_of(folder: &Path) -> Result<RigFile, CaseError> {
 /// # Errors
 /// A pattern that no file fits.
 pub fn to_fit(rig: &RigFile, folder: &Path) -> Result<Vec<String>, CaseError> {
+    names_to_fit(&rig.path, &rig.fit, rig.predict.as_ref(), folder)
+}
+
+/// As [`to_fit`], of names in any file.
+pub(super) fn names_to_fit(
+    file: &Path,
+    fit: &[String],
+    predict: Option<&String>,
+    folder: &Path,
+) -> Result<Vec<String>, CaseError> {
     let mut names: Vec<String> = Vec::new();
-    for name in &rig.fit {
+    for name in fit {
         if !name.contains('*') {
             names.push(name.clone());
             continue;
@@ -54,11 +64,11 @@ pub fn to_fit(rig: &RigFile, folder: &Path) -> Result<Vec<String>, CaseError> {
         let mut found: Vec<String> = entries
             .filter_map(|entry| entry.file_name().into_string().ok())
             .filter(|file| fits(name, file))
-            .filter(|file| rig.predict.as_ref() != Some(file) && !names.contains(file))
+            .filter(|file| predict != Some(file) && !names.contains(file))
             .collect();
         if found.is_empty() {
             return Err(CaseError::NoneLike {
-                file: rig.path.display().to_string(),
+                file: file.display().to_string(),
                 pattern: name.clone(),
             });
         }

@@ -297,5 +297,6 @@ pub fn arm_options(arm: &ArmScenario) -> ArmOptions {
             })
             .collect(),
         skip_visuals: false,
+        is_recorded: false,
     }
 }

@@ -41,7 +41,7 @@ impl CollisionModel {
         let still = self
             .pairs
             .iter()
-            .filter(|pair| pair.moved_by(&[1.0; 8]) == 0.0);
+            .filter(|pair| pair.moved_by(&[1.0; crate::arm::chain::MAX_JOINTS]) == 0.0);
         let meets = still.filter(|pair| {
             self.distance(pair, &links, 0.0) <= pair.margin || self.is_enclosed(pair, &links)
         });

@@ -9,6 +9,7 @@ pub mod doubt;
 pub mod estimate;
 pub mod family;
 pub mod finding;
+pub mod parameters;
 pub mod shared;
 pub mod statements;
 pub mod words;
@@ -20,13 +21,14 @@ use serde::{Deserialize, Serialize};
 
 use self::details::Details;
 use self::doubt::Doubt;
-use self::estimate::Estimate;
+use self::parameters::Parameters;
 use self::words::display_name;
 use super::difference::mismatch::Mismatch;
 use super::formula::unlisted::report::UnlistedReport;
 use crate::effects::UNLISTED;
 use crate::effects::meaning;
 use crate::plant::LawText;
+use crate::recorded_arm::vocabulary::arm_effect;
 use crate::recording::RecordingError;
 use crate::recording::atomic::write_text;
 
@@ -97,8 +99,7 @@ pub struct FoundEffect {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub doubts: Vec<Doubt>,
     /// Its numbers by name, in the order of the vocabulary.
-    #[serde(with = "in_order")]
-    pub parameters: Vec<(String, Estimate)>,
+    pub parameters: Parameters,
     /// Variables on which it depends.
     pub depends_on: Vec<String>,
     /// The law, of an effect that is written as an expression.
@@ -154,6 +155,11 @@ impl FoundEffect {
         }
         if let Some(key) = &self.key {
             return format!("{key} is another than the rig file says");
+        }
+        // Joints of a cell have effects of the same name with a meaning of their own.
+        let of_arm = arm_effect(&self.name).filter(|effect| effect.subsystem == self.subsystem);
+        if let Some(effect) = of_arm {
+            return effect.meaning.to_owned() + &self.parameters.place_words();
         }
         let own = self.law.as_ref().map(FoundLaw::words);
         own.unwrap_or_else(|| meaning(&self.name).to_owned())
@@ -328,42 +334,9 @@ impl Answer {
     }
 }
 
-/// A list of names and values as a table that keeps their order.
-mod in_order {
-    use std::fmt;
-
-    use serde::de::{Deserializer, MapAccess, Visitor};
-    use serde::ser::Serializer;
-
-    use super::Estimate;
-
-    type List = Vec<(String, Estimate)>;
-
-    pub fn serialize<S: Serializer>(list: &List, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(list.iter().map(|(name, estimate)| (name, estimate)))
-    }
-
-    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<List, D::Error> {
-        struct InOrder;
-        impl<'de> Visitor<'de> for InOrder {
-            type Value = List;
-            fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-                formatter.write_str("a table of numbers with their intervals")
-            }
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<List, A::Error> {
-                let mut list = Vec::new();
-                while let Some(entry) = map.next_entry()? {
-                    list.push(entry);
-                }
-                Ok(list)
-            }
-        }
-        deserializer.deserialize_map(InOrder)
-    }
-}
-
 #[cfg(test)]
 pub(super) mod tests {
+    use super::estimate::Estimate;
     use super::*;
 
     pub(in super::super) fn answer() -> Answer {
@@ -384,7 +357,8 @@ pub(super) mod tests {
                         estimate(90.0, 70.0, 112.0),
                     ),
                     ("coulomb_force_n".to_owned(), estimate(12.1, 11.6, 12.7)),
-                ],
+                ]
+                .into(),
                 depends_on: vec!["velocity_sign".to_owned()],
                 law: None,
                 unlisted: None,

@@ -296,7 +296,7 @@ mod tests {
                 subsystem: "sensors".to_owned(),
                 confidence: 1.0,
                 doubts: Vec::new(),
-                parameters: vec![("gain".to_owned(), Estimate::new(value, low, high))],
+                parameters: vec![("gain".to_owned(), Estimate::new(value, low, high))].into(),
                 depends_on: Vec::new(),
                 law: None,
                 unlisted: None,

@@ -18,7 +18,10 @@ pub mod push;
 pub mod quantity;
 pub mod simulate;
 pub mod spline;
+pub mod tolerated;
+pub mod vocabulary;
 pub mod wrench;
 
 pub use parameters::{ArmParameters, Drive, PointMass};
 pub use quantity::Quantity;
+pub use tolerated::Tolerated;

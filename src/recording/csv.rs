@@ -13,6 +13,7 @@ use columns::{COLUMNS, Column, TIME};
 mod cell;
 mod columns;
 mod edge_profile;
+mod log;
 mod named;
 mod table;
 #[cfg(test)]
@@ -21,6 +22,9 @@ mod tests;
 pub use cell::{CellRecording, read_cell_csv};
 pub use columns::{column_of, plausible_range};
 pub use edge_profile::EdgeProfile;
+#[cfg(feature = "parquet")]
+pub(super) use log::no_stamps;
+pub use log::{Log, read_log_csv};
 pub use named::{NamedColumns, read_named};
 
 /// A recording with what its file holds besides.

@@ -8,6 +8,7 @@ pub mod atomic;
 pub mod csv;
 mod error;
 pub mod gaps;
+pub mod log;
 pub mod long_column;
 #[cfg(feature = "parquet")]
 pub mod long_table;

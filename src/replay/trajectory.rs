@@ -13,7 +13,7 @@ use glam::{DMat3, DVec3};
 use glamx::DPose3;
 use nalgebra::{DMatrix, DVector};
 
-const _: () = assert!(MAX_JOINTS == MOST_JOINTS);
+const _: () = assert!(MAX_JOINTS >= MOST_JOINTS);
 
 /// Commands of one recording.
 #[derive(Debug, Clone, Copy)]

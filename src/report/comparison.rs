@@ -131,7 +131,11 @@ impl Comparison {
                     |(name, joint): &&(String, Estimate)| name == JOINT && joint.value > 0.0;
                 let own = match effect.parameters.iter().find(of_joint) {
                     Some((_, joint)) => format!("{}_{}", effect.name, joint.value),
-                    None => effect.name.clone(),
+                    None => {
+                        let place = effect.parameters.place.iter();
+                        let place = place.map(|(key, place)| format!("_{key}_{place}"));
+                        effect.name.clone() + &place.collect::<String>()
+                    }
                 };
                 let words = own.replace('_', " ");
                 let key = format!("{own}.probability");

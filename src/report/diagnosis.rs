@@ -7,16 +7,12 @@ use crate::diagnosis::answer::account::SectionKind;
 use crate::diagnosis::answer::details::remaining_errors;
 use crate::diagnosis::answer::estimate::Estimate;
 use crate::diagnosis::answer::statements::TRUSTED;
-use crate::diagnosis::answer::words::{
-    CHANNEL_WORDS, capital, in_unit, of_column, percent, reference_noise,
-};
+use crate::diagnosis::answer::words::{capital, of_column, percent, reference_noise};
 use crate::diagnosis::answer::{Answer, FoundEffect, Verdict};
 use crate::diagnosis::difference::comparison::{Compared, Comparison};
-use crate::diagnosis::recordings::recorded::COLUMNS;
 use crate::document::{Block, Cell, Column, Document, Fact, Number, Section, Strip, Table, Tone};
 use crate::effects::UNLISTED;
 use crate::effects::meaning;
-use crate::plant::CHANNELS;
 use crate::quantity::significant;
 
 /// Recordings that are shown at once; the others are folded away.
@@ -110,12 +106,14 @@ fn facts(answer: &Answer) -> Vec<Fact> {
     if let Some(share) = details.explained_share {
         let errors = remaining_errors(&details.misfit, &details.prediction);
         let left = match errors.first() {
-            Some(error) if error.is_beyond_noise() => format!(
-                "left: {} RMS in the {} ({} σ, robust)",
-                in_unit(CHANNELS[error.channel], error.rms),
-                CHANNEL_WORDS[error.channel],
-                significant(error.sigmas, 2)
-            ),
+            Some(error) if error.is_beyond_noise() => {
+                let (words, unit, factor) = of_column(&error.column);
+                format!(
+                    "left: {} {unit} RMS in the {words} ({} σ, robust)",
+                    significant(factor * error.rms, 2),
+                    significant(error.sigmas, 2)
+                )
+            }
             _ => format!(
                 "no more than {} is left",
                 reference_noise(details.remaining.is_some())
@@ -184,7 +182,7 @@ fn parameters<'a>(answer: &Answer) -> Option<Block<'a>> {
         let certain = estimate.low == estimate.high;
         let unless_certain = |cell: Cell| if certain { Cell::from("") } else { cell };
         vec![
-            Cell::from(effect.name.replace('_', " ")),
+            Cell::from(effect.name.replace('_', " ") + &effect.parameters.place_words()),
             Cell::from(effect.subsystem.replace('_', " ")),
             confidence.written(percent(effect.confidence)).into(),
             Cell::from(words),
@@ -264,8 +262,8 @@ fn where_it_shows<'a>(answer: &Answer, comparison: &Comparison) -> Option<Sectio
             own.map(|m| [m.start_s, m.end_s].map(|t| t - start))
                 .collect()
         };
-        let rows = COLUMNS.iter().zip(CHANNEL_WORDS);
-        let rows = rows.map(|(column, words)| (words.to_owned(), own(column)));
+        let rows = recording.channels.iter().map(|channel| &channel.column);
+        let rows = rows.map(|column| (of_column(column).0, own(column)));
         let rows: Vec<_> = rows.filter(|(_, spans)| !spans.is_empty()).collect();
         if let (false, [first, .., last]) = (rows.is_empty(), recording.time.as_slice()) {
             let heading = match start {

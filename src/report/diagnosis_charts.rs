@@ -2,12 +2,11 @@
 
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::answer::words::{
-    CHANNEL_UNITS, CHANNEL_WORDS, capital, display_name, reference_noise,
+    CHANNEL_UNITS, CHANNEL_WORDS, capital, display_name, of_column, reference_noise,
 };
 use crate::diagnosis::difference::comparison::{Balance, Compared, ComparedChannel};
 use crate::diagnosis::difference::mismatch::Mismatch;
 use crate::diagnosis::formula::unlisted::report::{ShapeRow, UnlistedReport};
-use crate::diagnosis::recordings::recorded::COLUMNS;
 use crate::document::{Band, Horizontal, Panel, Role, Series, Stroke};
 use crate::stats::{NORMAL_95, quantiles};
 
@@ -36,8 +35,8 @@ pub(super) fn channel<'a>(
     recording: &'a Compared,
     channel: &'a ComparedChannel,
 ) -> [Panel<'a>; 2] {
-    let index = channel.channel as usize;
-    let (unit, factor) = CHANNEL_UNITS[index];
+    let column = &channel.column;
+    let (name, unit, factor) = of_column(column);
     let start = origin(recording);
     let from_start = |t: f64| t - start;
     let time: Vec<f64> = recording.time.iter().map(|t| from_start(*t)).collect();
@@ -45,14 +44,14 @@ pub(super) fn channel<'a>(
     let series = |values: Vec<f64>, label: &str, role, stroke| {
         Series::new(label, time.clone(), values, role, stroke)
     };
-    let own = |m: &&Mismatch| m.recording == recording.name && m.channel == COLUMNS[index];
+    let own = |m: &&Mismatch| m.recording == recording.name && m.channel == *column;
     let spans = answer.mismatch.iter().filter(own);
     let spans: Vec<[f64; 2]> = spans
         .map(|m| [from_start(m.start_s), from_start(m.end_s)])
         .collect();
     let chart = |title: String, series, bands| Panel {
         title,
-        vertical_label: format!("{} [{unit}]", CHANNEL_WORDS[index]),
+        vertical_label: format!("{name} [{unit}]"),
         horizontal: time_axis(start),
         series,
         bands,
@@ -61,7 +60,7 @@ pub(super) fn channel<'a>(
         group: recording.name.clone(),
         within: None,
     };
-    let words = capital(CHANNEL_WORDS[index]);
+    let words = capital(&name);
     // Of a flange the desired force stands in place of a nominal model.
     let is_flange = !answer.details.runs.is_empty();
     let nominal = if is_flange { "desired" } else { "nominal" };
@@ -95,7 +94,7 @@ pub(super) fn channel<'a>(
         series(left, &format!("measured less {label}"), role, stroke)
     });
     let noise = answer.details.noise.iter();
-    let noise = noise.filter(|n| n.channel == COLUMNS[index]).map(|n| {
+    let noise = noise.filter(|n| n.channel == *column).map(|n| {
         let half = NORMAL_95 * factor * n.standard_deviation;
         Band {
             label: reference_noise(answer.details.remaining.is_some()).to_owned(),

@@ -32,6 +32,7 @@ use crate::unit::Unit;
 use keys::{JOINT, KeyTable, LISTED, NAME};
 
 pub(super) use keys::EffectKeys;
+pub(super) use value::EffectValue;
 
 pub(super) use schema::schema;
 pub use tried::{LineError, law_of_line};

@@ -1,6 +1,7 @@
 //! A scenario: what to simulate, in strict SI, checked. `file` mirrors the TOML file, `document` finds its way in it, `load` turns it into this.
 
 mod any;
+pub mod arm_file;
 mod assumed;
 pub mod bench;
 mod bench_file;

@@ -148,7 +148,7 @@ fn cases(folder: &Path, of_cell: bool) -> Result<Vec<String>, AppError> {
         let reason = if of_cell {
             "none in it has recordings"
         } else {
-            "none in it has a rig.toml"
+            "none in it has a rig.toml or an arm.toml"
         };
         return Err(refuse(reason.to_owned()));
     }
@@ -229,7 +229,9 @@ fn table(outcomes: &[Outcome]) -> String {
         let name = &outcome.name;
         let line = match &outcome.result {
             Ok(Done { answer, kept }) => {
-                let effects: Vec<&str> = answer.effects.iter().map(|e| e.name.as_str()).collect();
+                let effects = answer.effects.iter();
+                let effects = effects.map(|e| e.name.clone() + &e.parameters.place_words());
+                let effects: Vec<String> = effects.collect();
                 let note = if *kept { "  (stood already)" } else { "" };
                 let (verdict, seconds) = (word(answer.verdict), answer.seconds);
                 let effects = effects.join(" + ");

@@ -2,7 +2,7 @@
 
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::answer::words::{
-    CHANNEL_UNITS, CHANNEL_WORDS, capital, display_name, reference_noise,
+    CHANNEL_UNITS, capital, display_name, of_column, reference_noise,
 };
 use crate::diagnosis::difference::comparison::{Balance, Compared, ComparedChannel, Comparison};
 use crate::diagnosis::difference::mismatch::Mismatch;
@@ -35,8 +35,18 @@ const FEW: usize = 5;
 const SPREAD: f64 = 0.2;
 const SIDE: f64 = 0.13;
 const GOLDEN: f64 = 0.618_034;
-/// The part of the device that each channel tells of.
+/// The part of the device that each of its channels tells of.
 const SUBSYSTEMS: [&str; CHANNELS.len()] = ["regulator", "piston", "contact", "piston"];
+
+/// The part that a column tells of; a column that is not of a device is of an arm.
+fn subsystem(column: &str) -> &'static str {
+    let place = COLUMNS.iter().position(|own| *own == column);
+    match place {
+        Some(place) => SUBSYSTEMS[place],
+        None if column.starts_with("wrench_") => "wrench sensor",
+        None => "joints",
+    }
+}
 
 /// The screen of a diagnosis; `scene` is what a cell looks like.
 pub(super) fn board(
@@ -135,11 +145,11 @@ fn sheet(answer: &Answer, recording: &Compared, of_flange: bool) -> Sheet {
 
 /// Robust error of the nominal model in a channel of a recording, over its noise [1]: what differs most is drawn first.
 fn lacking(answer: &Answer, recording: &Compared, channel: &ComparedChannel) -> f64 {
-    let column = COLUMNS[channel.channel as usize];
+    let column = &channel.column;
     let fitted = answer.details.misfit.iter();
-    let fitted = fitted.filter(|m| m.recording == recording.name && m.channel == column);
+    let fitted = fitted.filter(|m| m.recording == recording.name && m.channel == *column);
     let kept = answer.details.prediction.iter();
-    let kept = kept.filter(|e| e.recording == recording.name && e.channel == column);
+    let kept = kept.filter(|e| e.recording == recording.name && e.channel == *column);
     let sizes = fitted.map(|m| m.tolerated_sigmas);
     let sizes = sizes.chain(kept.filter_map(|e| e.before_sigmas));
     sizes.fold(0.0, f64::max)
@@ -152,9 +162,8 @@ fn row(
     kept: &[usize],
     of_flange: bool,
 ) -> Vec<SheetPlot> {
-    let index = channel.channel as usize;
-    let (unit, factor) = CHANNEL_UNITS[index];
-    let words = capital(CHANNEL_WORDS[index]);
+    let (name, unit, factor) = of_column(&channel.column);
+    let words = capital(&name);
     let is_known = |values: &[f64]| values.iter().any(|value| value.is_finite());
     let line = |label: &str, role, value: &dyn Fn(usize) -> f64| BoardLine {
         label: format!("{label} [{unit}]"),
@@ -184,7 +193,7 @@ fn row(
         });
         let left: Vec<BoardLine> = left.collect();
         let noise = answer.details.noise.iter();
-        let noise = noise.filter(|noise| noise.channel == COLUMNS[index]);
+        let noise = noise.filter(|noise| noise.channel == channel.column);
         let guides = noise.flat_map(|noise| {
             let half = NORMAL_95 * factor * noise.standard_deviation;
             let reference_noise = reference_noise(answer.details.remaining.is_some());
@@ -220,8 +229,8 @@ fn lanes(answer: &Answer, recording: &Compared, start: f64) -> Vec<Lane> {
         _ => "differs from the model".to_owned(),
     };
     let lane = |channel: &ComparedChannel| {
-        let index = channel.channel as usize;
-        let own = |m: &&Mismatch| m.recording == recording.name && m.channel == COLUMNS[index];
+        let column = &channel.column;
+        let own = |m: &&Mismatch| m.recording == recording.name && m.channel == *column;
         let flagged = answer.mismatch.iter().filter(own);
         let mut spans: Vec<(f64, f64, String)> = flagged
             .map(|m| (m.start_s - start, m.end_s - start, state.clone()))
@@ -235,7 +244,7 @@ fn lanes(answer: &Answer, recording: &Compared, start: f64) -> Vec<Lane> {
             }
         }
         Lane {
-            name: format!("{}: {}", SUBSYSTEMS[index], CHANNEL_WORDS[index]),
+            name: format!("{}: {}", subsystem(column), of_column(column).0),
             spans: apart,
         }
     };
@@ -335,7 +344,6 @@ fn of_unlisted(report: &UnlistedReport) -> Cloud {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plant::Channel;
 
     fn answer(spans: &[(f64, f64)]) -> Answer {
         let mut answer: Answer = serde_json::from_str(
@@ -361,7 +369,7 @@ mod tests {
             unseen,
             time: (0..count).map(|i| 5.0 + 1e-3 * i as f64).collect(),
             channels: vec![ComparedChannel {
-                channel: Channel::Force,
+                column: "force_n".to_owned(),
                 measured: values(0.0),
                 nominal: values(2.0),
                 tolerated: values(1.0),

@@ -19,6 +19,7 @@ use crate::arm::{Arm, load_arm};
 use crate::cell::{CellError, arm_options};
 use crate::diagnosis::difference::comparison::Compared;
 use crate::diagnosis::joints::servo::Axes;
+use crate::diagnosis::recordings::recorded::COLUMNS;
 use crate::plant::{ArmTrajectory, Channel, PlantParameters, follow};
 use crate::replay::LoadedCell;
 use crate::scene::colour::Colour;
@@ -65,7 +66,7 @@ pub(super) fn cell_scene(
     let simulated = simulated_angles(drawn.axes, improved);
     let nominal = simulated_angles(drawn.axes, nominal);
     let channels = drawn.compared.channels.iter();
-    let mut strokes = channels.filter(|c| c.channel == Channel::Stroke);
+    let mut strokes = channels.filter(|c| c.column == COLUMNS[Channel::Stroke as usize]);
     let strokes = strokes.next().map(|c| {
         let each = [&c.improved, &c.measured, &c.nominal];
         each.map(|values| held(values.clone(), time.len()))
@@ -276,7 +277,7 @@ fn edge_path(drawn: &Drawn<'_>) -> EdgePath {
         (place as usize).min(SEGMENTS - 1)
     };
     let mut channels = drawn.compared.channels.iter();
-    let force = channels.rfind(|c| c.channel == Channel::Force);
+    let force = channels.rfind(|c| c.column == COLUMNS[Channel::Force as usize]);
     let mut sums = vec![(0.0, 0.0); SEGMENTS];
     // Corners: the place of the sample that is nearest to each.
     let mut corners = vec![(f64::INFINITY, DVec3::ZERO); SEGMENTS + 1];

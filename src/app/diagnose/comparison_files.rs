@@ -40,18 +40,23 @@ pub(super) fn write_recordings(path: &Path, comparison: &Comparison) -> Result<(
             LongColumn::Numbers(recordings.iter().flat_map(|r| r.time.clone()).collect()),
         ),
     ];
-    for channel in CHANNELS {
-        let own = |r: &Compared| r.channels.iter().position(|c| c.channel == channel);
-        if recordings.iter().all(|r| own(r).is_none()) {
-            continue;
+    let mut names: Vec<&str> = Vec::new();
+    for channel in recordings.iter().flat_map(|r| &r.channels) {
+        if !names.contains(&channel.column.as_str()) {
+            names.push(&channel.column);
         }
+    }
+    // Those of a device in the order of the format, whatever the first recording lacks.
+    names.sort_by_key(|name| COLUMNS.iter().position(|own| own == name));
+    for name in names {
+        let own = |r: &Compared| r.channels.iter().position(|c| c.column == name);
         for (place, model) in MODELS.into_iter().enumerate() {
             let values = recordings.iter().flat_map(|r| match own(r) {
                 Some(index) => of_model(&r.channels[index], place).to_vec(),
                 None => vec![f64::NAN; r.time.len()],
             });
             columns.push((
-                format!("{model}_{}", COLUMNS[channel as usize]),
+                format!("{model}_{name}"),
                 LongColumn::Numbers(values.collect()),
             ));
         }
@@ -148,15 +153,15 @@ fn recordings(path: &Path) -> Result<Vec<Compared>, AppError> {
     let mut found = Vec::new();
     let mut first = 0;
     let pairs: Vec<(&String, &String)> = names.iter().zip(kept).collect();
+    let columns = rows.columns.iter();
+    let columns = columns.filter_map(|(name, _)| name.strip_prefix(MODELS[1])?.strip_prefix('_'));
+    let columns: Vec<&str> = columns.collect();
     for run in pairs.chunk_by(|a, b| a == b) {
         let span = first..first + run.len();
         first = span.end;
         let mut channels = Vec::new();
-        for channel in CHANNELS {
-            let column = |model: &str| format!("{model}_{}", COLUMNS[channel as usize]);
-            if rows.find(&column(MODELS[1])).is_none() {
-                continue;
-            }
+        for name in &columns {
+            let column = |model: &str| format!("{model}_{name}");
             let read = |place: usize| -> Result<Vec<f64>, AppError> {
                 Ok(rows.numbers(&column(MODELS[place]))?[span.clone()].to_vec())
             };
@@ -166,7 +171,7 @@ fn recordings(path: &Path) -> Result<Vec<Compared>, AppError> {
                 continue;
             }
             channels.push(ComparedChannel {
-                channel,
+                column: (*name).to_owned(),
                 measured,
                 nominal,
                 tolerated,
@@ -218,8 +223,8 @@ mod tests {
 
     #[test]
     fn a_comparison_reads_back() {
-        let channel = |channel, offset: f64| ComparedChannel {
-            channel,
+        let channel = |channel: Channel, offset: f64| ComparedChannel {
+            column: COLUMNS[channel as usize].to_owned(),
             measured: vec![f64::NAN, offset],
             nominal: vec![offset, 1.0],
             tolerated: vec![offset, 0.75],

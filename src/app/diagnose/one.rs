@@ -10,7 +10,9 @@ use super::flange_picture;
 use super::outputs::{Finished, NAMES, Outputs, is_complete};
 use super::removal_picture;
 use super::unlisted_picture::picture;
-use crate::case::{Case, Diagnosed, IMPROVED, RIG, RemovalCase, RemovalDiagnosed, diagnose};
+use crate::case::{
+    Case, Diagnosed, IMPROVED, RIG, RemovalCase, RemovalDiagnosed, diagnose, is_arm_case,
+};
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::answer::account::SectionKind;
 use crate::diagnosis::answer::details::DETAILS_SCHEMA;
@@ -41,7 +43,7 @@ pub(super) struct Prepared {
 
 /// Whether this is a folder with a case.
 pub(super) fn is_case(folder: &Path) -> bool {
-    folder.join(RIG).is_file()
+    folder.join(RIG).is_file() || is_arm_case(folder)
 }
 
 /// The diagnosis that stands complete in a folder.

@@ -25,6 +25,9 @@ pub struct ArmOptions {
     pub tip_from_mount: DQuat,
     /// Whether to leave out everything that is only drawn, and what would meet other things.
     pub skip_visuals: bool,
+    /// Whether the arm is known by its recordings and nothing has to move it: it may then have another number of joints, drives without limits and links
+    /// without mass.
+    pub is_recorded: bool,
 }
 
 /// Drive limits that replace those of the file.
@@ -36,7 +39,7 @@ pub struct LimitOverride {
     pub velocity: Option<f64>,
 }
 
-/// A serial arm of five to seven moving joints.
+/// A serial arm of five to seven moving joints; a recorded one may have others.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Arm {
     /// Name of the robot in the file.

@@ -11,9 +11,9 @@ use super::inertia::merged_bodies;
 use super::masses::Masses;
 use super::mount::{self, Mount};
 use super::source::Source;
-use super::tree::Tree;
+use super::tree::{OF_A_CELL, Tree};
 use super::{ArmOptions, Refusal, collisions, refused};
-use crate::arm::chain::BodyInertia;
+use crate::arm::chain::{BodyInertia, MAX_JOINTS};
 
 /// Mass of a robot of 1 m reach [kg], and the power of reach with which it grows.
 const MASS: f64 = 80.0;
@@ -51,11 +51,26 @@ pub fn draft_of(path: &Path) -> Result<ArmDraft, ArmError> {
     draft(&source).map_err(|refusal| refused(path, &source, refusal))
 }
 
+/// Where load and wrench sensor of a recorded arm are, of whatever number of joints.
+///
+/// # Errors
+/// As [`draft_of`].
+pub fn mount_of_recorded(path: &Path) -> Result<Mount, ArmError> {
+    let source = Source::read(path)?;
+    mount::likely(&source.robot, 1..=MAX_JOINTS).map_err(|refusal| refused(path, &source, refusal))
+}
+
 fn draft(source: &Source) -> Result<ArmDraft, Refusal> {
     let robot = &source.robot;
-    let mount = mount::likely(robot)?;
+    let mount = mount::likely(robot, OF_A_CELL)?;
     let tip = mount.flange_link.as_str();
-    let tree = Tree::build(robot, mount.base_link.as_deref(), tip, &mut Vec::new())?;
+    let tree = Tree::build(
+        robot,
+        mount.base_link.as_deref(),
+        tip,
+        OF_A_CELL,
+        &mut Vec::new(),
+    )?;
     let reach = reach(&tree);
     let mut options = ArmOptions {
         base_link: mount.base_link.clone(),

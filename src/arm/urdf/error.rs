@@ -115,12 +115,13 @@ pub enum Refusal {
     #[error("tip link `{tip}` is not reached from base link `{base}`")]
     TipNotReached { base: String, tip: String },
     #[error(
-        "the path from `{base}` to `{tip}` has {count} moving joints{names}; expected 5 to 7{hint}"
+        "the path from `{base}` to `{tip}` has {count} moving joints{names}; expected {} to {}{hint}", .expected[0], .expected[1]
     )]
     JointCount {
         base: String,
         tip: String,
         count: usize,
+        expected: [usize; 2],
         names: String,
         hint: &'static str,
     },

@@ -53,7 +53,9 @@ pub(super) fn merged_bodies(
                 by_volume,
             });
         }
-        check(link, merged, context, notes)?;
+        if !(merged.mass == 0.0 && masses.options.is_recorded) {
+            check(link, merged, context, notes)?;
+        }
     }
     Ok((bodies, estimated))
 }

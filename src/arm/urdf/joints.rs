@@ -6,6 +6,9 @@ use super::{ArmOptions, Refusal};
 use crate::arm::chain::{BodyInertia, Joint, JointKind};
 use urdf_rs::JointType;
 
+/// Speed of a recorded arm's joint of which its file says none [rad/s or m/s].
+const USUAL_SPEED: f64 = 2.0;
+
 /// Turns a joint of the file into one of the chain.
 pub(super) fn path_joint(
     moving: &Moving,
@@ -14,9 +17,12 @@ pub(super) fn path_joint(
     notes: &mut Vec<String>,
 ) -> Result<Joint, Refusal> {
     let source = moving.joint;
-    let (lower, upper) = position_limits(source, notes)?;
+    let (lower, upper) = match position_limits(source, notes) {
+        Err(_) if options.is_recorded => (f64::NEG_INFINITY, f64::INFINITY),
+        limits => limits?,
+    };
     let replaced = options.limit_overrides.get(&source.name);
-    let mut drive_limit = |limit, in_file: f64, replacement: Option<f64>| {
+    let mut drive_limit = |limit, in_file: f64, usual: f64, replacement: Option<f64>| {
         let value = replacement.unwrap_or(in_file);
         if replacement.is_some() {
             notes.push(format!(
@@ -26,6 +32,8 @@ pub(super) fn path_joint(
         }
         if value.is_finite() && value > 0.0 {
             Ok(value)
+        } else if options.is_recorded {
+            Ok(usual)
         } else {
             Err(Refusal::DriveLimit {
                 joint: source.name.clone(),
@@ -39,10 +47,16 @@ pub(super) fn path_joint(
         }
     };
     let limit = &source.limit;
-    let effort = drive_limit("effort", limit.effort, replaced.and_then(|r| r.effort))?;
+    let effort = drive_limit(
+        "effort",
+        limit.effort,
+        f64::INFINITY,
+        replaced.and_then(|r| r.effort),
+    )?;
     let velocity = drive_limit(
         "velocity",
         limit.velocity,
+        USUAL_SPEED,
         replaced.and_then(|r| r.velocity),
     )?;
     if limit.acceleration.is_finite() || limit.deceleration.is_finite() || limit.jerk.is_finite() {

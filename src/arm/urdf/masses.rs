@@ -91,6 +91,9 @@ impl Masses<'_> {
             return Ok(found);
         };
         let Some(whole) = self.options.whole_mass else {
+            if self.options.is_recorded {
+                return Ok(found);
+            }
             return Err(Refusal::NoMass {
                 link: tree.link_names()[first].clone(),
                 why: "no <inertial> with a mass in it or in what is fixed to it",

@@ -6,6 +6,7 @@ use glamx::DPose3;
 use super::Refusal;
 use super::graph::{Graph, kind_of};
 use super::tree::{Tree, unit_axis};
+use std::ops::RangeInclusive;
 use urdf_rs::{Joint, JointType, Link, Robot};
 
 /// Names that frames for tools usually have, the usual one first; names may have a robot's name before them.
@@ -25,7 +26,7 @@ pub struct Mount {
 }
 
 /// The link of a file that a device would be mounted on: of those that end an arm one with a usual name, else the outermost frame.
-pub(super) fn likely(robot: &Robot) -> Result<Mount, Refusal> {
+pub(super) fn likely(robot: &Robot, counts: RangeInclusive<usize>) -> Result<Mount, Refusal> {
     let graph = Graph::build(robot)?;
     let tried = |link: &Link| -> Result<Mount, Refusal> {
         let base = match graph.root() {
@@ -33,7 +34,13 @@ pub(super) fn likely(robot: &Robot) -> Result<Mount, Refusal> {
             Err(refusal @ Refusal::Ring { .. }) => return Err(refusal),
             Err(_) => Some(graph.root_above(link)),
         };
-        let tree = Tree::build(robot, base.as_deref(), &link.name, &mut Vec::new())?;
+        let tree = Tree::build(
+            robot,
+            base.as_deref(),
+            &link.name,
+            counts.clone(),
+            &mut Vec::new(),
+        )?;
         Ok(Mount {
             rotation: turn(&tree)?,
             base_link: base,
@@ -41,7 +48,7 @@ pub(super) fn likely(robot: &Robot) -> Result<Mount, Refusal> {
         })
     };
     let mut refused = None;
-    for link in by_likelihood(robot, &graph) {
+    for link in by_likelihood(robot, &graph, &counts) {
         match tried(link) {
             Ok(mount) => return Ok(mount),
             // The message is that of the likeliest link.
@@ -54,7 +61,11 @@ pub(super) fn likely(robot: &Robot) -> Result<Mount, Refusal> {
 }
 
 /// Links, the likeliest first: by their names, then by the count of moving joints that carry them (not counting fingers), frames before bodies.
-fn by_likelihood<'a>(robot: &'a Robot, graph: &Graph<'a>) -> Vec<&'a Link> {
+fn by_likelihood<'a>(
+    robot: &'a Robot,
+    graph: &Graph<'a>,
+    counts: &RangeInclusive<usize>,
+) -> Vec<&'a Link> {
     let rank = |link: &Link| {
         let is = |usual: &str| {
             let before = link.name.strip_suffix(usual);
@@ -64,7 +75,7 @@ fn by_likelihood<'a>(robot: &'a Robot, graph: &Graph<'a>) -> Vec<&'a Link> {
         let above = graph.above(link);
         let moving = above.iter().filter(|joint| moves(joint)).count();
         let finger = is_on_finger(robot, &above);
-        let is_arm = (5..=7).contains(&moving) && !finger;
+        let is_arm = counts.contains(&moving) && !finger;
         let body = !link.visual.is_empty() || link.inertial.mass.value > 0.0;
         // A frame far behind the last joint is rather that of a tool.
         let fixed = above.iter().rev().take_while(|joint| !moves(joint)).count();

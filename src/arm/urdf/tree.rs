@@ -6,7 +6,11 @@ use crate::arm::chain::BodyInertia;
 use crate::arm::chain::{Joint as ChainJoint, JointKind};
 use glam::DVec3;
 use glamx::DPose3;
+use std::ops::RangeInclusive;
 use urdf_rs::{Joint, Link, Robot};
+
+/// Numbers of moving joints that an arm of a cell may have.
+pub(super) const OF_A_CELL: RangeInclusive<usize> = 5..=7;
 
 /// A moving joint on the path, with the fixed frames before it folded in.
 pub(super) struct Moving<'a> {
@@ -38,6 +42,7 @@ impl<'a> Tree<'a> {
         robot: &'a Robot,
         base: Option<&str>,
         tip: &str,
+        counts: RangeInclusive<usize>,
         notes: &mut Vec<String>,
     ) -> Result<Self, Refusal> {
         let graph = Graph::build(robot)?;
@@ -60,9 +65,10 @@ impl<'a> Tree<'a> {
             .iter()
             .find(|placed| placed.link.name == tip.name);
         tree.tip_from_last = tip_placed.map_or(DPose3::IDENTITY, |p| p.moving_from_link);
-        if !(5..=7).contains(&tree.moving.len()) {
+        if !counts.contains(&tree.moving.len()) {
             let names: Vec<_> = tree.path_joints().map(|j| j.name.as_str()).collect();
             let hint = match names.len() {
+                _ if counts != OF_A_CELL => "",
                 4 => {
                     "; an arm of four axes, as palletisers and SCARAs are, cannot lean a tool as edges ask for"
                 }
@@ -75,6 +81,7 @@ impl<'a> Tree<'a> {
                 base: base.name.clone(),
                 tip: tip.name.clone(),
                 count: names.len(),
+                expected: [*counts.start(), *counts.end()],
                 names: match names.len() {
                     0 => String::new(),
                     _ => format!(" ({})", names.join(", ")),

@@ -7,6 +7,7 @@ use super::details::{
 };
 use super::estimate::{Estimate, Number};
 use super::finding::{Diagnosis, ErrorSize, Unseen};
+use super::parameters::Parameters;
 use super::statements::{TRUSTED, far_above, forbids_fully};
 use super::{Alternative, Answer, Extent, FoundEffect, FoundLaw, SCHEMA, Verdict};
 use crate::diagnosis::difference::extent::NEAR_NOISE;
@@ -203,7 +204,7 @@ impl Diagnosis {
             subsystem: Link::of(CHANNELS[channel]).subsystem().name().to_owned(),
             confidence: TRUSTED,
             doubts: Vec::new(),
-            parameters: Vec::new(),
+            parameters: Parameters::default(),
             depends_on: Vec::new(),
             key: None,
             law: None,

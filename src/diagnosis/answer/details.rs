@@ -12,7 +12,6 @@ use crate::diagnosis::difference::localise::NOISE_ALONE;
 use crate::diagnosis::difference::mismatch::Mismatch;
 use crate::diagnosis::effort::EffortReport;
 use crate::diagnosis::flange::fit::report::SimulatedFlange;
-use crate::diagnosis::recordings::recorded::COLUMNS;
 use crate::quantity::{change, significant};
 use crate::recording::provenance::Provenance;
 
@@ -452,8 +451,8 @@ pub struct RemainingError {
     pub recording: String,
     /// Whether it was kept from the fit.
     pub kept_back: bool,
-    /// Index of the channel.
-    pub channel: usize,
+    /// Its column.
+    pub column: String,
     /// Root mean square, in the column's unit.
     pub rms: f64,
     /// Robust root mean square over the noise [1].
@@ -468,29 +467,26 @@ impl RemainingError {
     }
 }
 
-/// Errors that the improved model leaves of the device's channels, the largest beside its noise first: in the recordings that were fitted to and in the one
+/// Errors that the improved model leaves of channels with a known noise, the largest beside its noise first: in the recordings that were fitted to and in the one
 /// that was kept back. What is predicted of recordings left out in turn is not among them: by a fit to fewer recordings, that may be less sure than any.
 #[must_use]
 pub fn remaining_errors(
     misfit: &[ChannelMisfit],
     prediction: &[PredictionError],
 ) -> Vec<RemainingError> {
-    let index = |column: &str| COLUMNS.iter().position(|own| *own == column);
-    let fitted = misfit.iter().filter_map(|m| {
-        Some(RemainingError {
-            recording: m.recording.clone(),
-            kept_back: false,
-            channel: index(&m.channel)?,
-            rms: m.improved_rms,
-            sigmas: m.improved_sigmas,
-        })
+    let fitted = misfit.iter().map(|m| RemainingError {
+        recording: m.recording.clone(),
+        kept_back: false,
+        column: m.channel.clone(),
+        rms: m.improved_rms,
+        sigmas: m.improved_sigmas,
     });
     let kept = prediction.iter().filter(|e| e.recording != IN_TURN);
     let kept = kept.filter_map(|e| {
         Some(RemainingError {
             recording: e.recording.clone(),
             kept_back: true,
-            channel: index(&e.channel)?,
+            column: e.channel.clone(),
             rms: e.after,
             sigmas: e.after_sigmas?,
         })

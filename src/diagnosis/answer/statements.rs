@@ -5,6 +5,7 @@ use super::doubt::Doubt;
 use super::estimate::Estimate;
 use super::{Answer, Extent, FoundEffect, Verdict};
 use crate::diagnosis::difference::localise::NOISE_ALONE;
+use crate::diagnosis::recordings::recorded::COLUMNS;
 use crate::effects::UNLISTED;
 
 /// Probability from which an effect is stated as found [1].
@@ -70,7 +71,8 @@ pub fn in_headline(confidence: f64, doubts: &[Doubt]) -> bool {
 #[must_use]
 pub fn far_above(misfit: &[ChannelMisfit]) -> Option<usize> {
     let errors = remaining_errors(misfit, &[]);
-    errors.first().filter(|e| e.sigmas > FAR).map(|e| e.channel)
+    let far = errors.first().filter(|e| e.sigmas > FAR)?;
+    COLUMNS.iter().position(|column| *column == far.column)
 }
 
 /// Whether a channel of a recording is predicted worse than by the nominal model.
@@ -171,6 +173,9 @@ fn of_effect(effect: &FoundEffect, headline: &str) -> Vec<String> {
     let joint = effect.parameters.iter().find(|(key, _)| key == "joint");
     let named = match joint {
         Some((_, joint)) => headline.contains(&format!("{name} (joint {})", joint.value)),
+        None if !effect.parameters.place.is_empty() => {
+            headline.contains(&format!("{name}{}", effect.parameters.place_words()))
+        }
         None => headline
             .split(|c: char| !(c.is_alphanumeric() || c == '_'))
             .any(|word| word == name),

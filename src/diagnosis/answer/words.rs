@@ -12,7 +12,7 @@ type DisplayUnit = (&'static str, &'static str, f64);
 
 /// Units by the end of a name, longer ends first.
 #[rustfmt::skip] // A table: one unit a line.
-const UNITS: [DisplayUnit; 34] = [
+const UNITS: [DisplayUnit; 38] = [
     ("_1_per_pa_s", "1/(bar s)", 1e5),
     ("_1_per_pa", "1/bar", 1e5),
     ("_1_per_s", "1/s", 1.0),
@@ -23,7 +23,10 @@ const UNITS: [DisplayUnit; 34] = [
     ("_n_s_per_m", "N s/m", 1.0),
     ("_n_per_m15", "N/mm^1.5", 3.162_277_660_168_379e-5),
     ("_m_per_s2", "m/s2", 1.0),
+    ("_n_m_s_per_rad", "N m s/rad", 1.0),
     ("_n_m_per_rad", "N m/rad", 1.0),
+    ("_n_m_per_a", "N m/A", 1.0),
+    ("_kg_m2", "kg m2", 1.0),
     ("_n_m", "N m", 1.0),
     ("_m_per_m", "mm/m", 1e3),
     ("_rad_per_s", "rad/s", 1.0),
@@ -41,6 +44,7 @@ const UNITS: [DisplayUnit; 34] = [
     ("_kg", "kg", 1.0),
     ("_hz", "Hz", 1.0),
     ("_n", "N", 1.0),
+    ("_a", "A", 1.0),
     ("_m", "mm", 1e3),
     ("_s", "ms", 1e3),
     ("_k", "K", 1.0),

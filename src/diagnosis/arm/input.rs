@@ -1,17 +1,9 @@
 //! What a diagnosis of a recorded arm is made of.
 
+use crate::recorded_arm::ArmParameters;
+pub use crate::recorded_arm::Tolerated;
 use crate::recorded_arm::motion::Motion;
 use crate::recorded_arm::simulate::Channel;
-use crate::recorded_arm::{ArmParameters, Quantity};
-
-/// A number that is known within bounds: the truth lies anywhere between them.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Tolerated {
-    /// The number.
-    pub quantity: Quantity,
-    /// Least and largest value [its unit].
-    pub bounds: [f64; 2],
-}
 
 /// A recording of an arm.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,10 +23,14 @@ pub struct ArmInput {
     pub nominal: ArmParameters,
     /// Names of the links behind the joints, base first.
     pub links: Vec<String>,
+    /// Number of each joint in the names of columns and in answers, from 1, base first.
+    pub numbers: Vec<usize>,
     /// Numbers that are known within bounds; what is not among them is exact.
     pub tolerated: Vec<Tolerated>,
     /// Measured channels.
     pub channels: Vec<Channel>,
+    /// Name of each channel's column.
+    pub columns: Vec<String>,
     /// Standard deviation of the noise of each channel [its unit].
     pub noise: Vec<f64>,
     /// Recordings to diagnose from.

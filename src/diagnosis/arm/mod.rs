@@ -1,5 +1,6 @@
 //! A recorded arm: what physics its log contains that its description leaves out.
 
+pub mod diagnosed;
 pub mod effect;
 pub mod estimate;
 pub mod evidence;
@@ -11,3 +12,5 @@ pub mod laws;
 pub mod pushed;
 pub mod quadratic;
 pub mod search;
+
+pub use diagnosed::{ArmDiagnosis, diagnose};

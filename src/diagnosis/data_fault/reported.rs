@@ -61,7 +61,8 @@ mod tests {
             let mut answer = answer();
             let effect = &mut answer.effects[0];
             effect.name = "channel_time_offset".to_owned();
-            effect.parameters = vec![("offset_s".to_owned(), Estimate::new(0.03, 0.02, 0.04))];
+            effect.parameters =
+                vec![("offset_s".to_owned(), Estimate::new(0.03, 0.02, 0.04))].into();
             effect.confidence = confidence;
             reported(answer, &[]).details.data_faults
         };

@@ -9,6 +9,7 @@ use crate::diagnosis::flange::Run;
 use crate::diagnosis::recordings::clean::clean;
 use crate::diagnosis::recordings::device::Device;
 use crate::diagnosis::recordings::input::{DiagnosisInput, NamedRecording};
+use crate::diagnosis::recordings::recorded::COLUMNS;
 use crate::plant::{CHANNELS, Channel, DeviceParts, PlantInputs, PlantParameters, simulate};
 
 /// Variables that are of the air in the chambers.
@@ -45,8 +46,8 @@ pub struct Compared {
 /// A channel beside the models [SI], one value per sample; NaN where there is none.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ComparedChannel {
-    /// The channel.
-    pub channel: Channel,
+    /// Its column.
+    pub column: String,
     /// Reading, without what was set aside.
     pub measured: Vec<f64>,
     /// By the nominal model; of a contact flange the desired force.
@@ -162,7 +163,7 @@ impl Diagnosis {
                     empty || measured[*channel as usize].iter().any(|v| v.is_finite())
                 })
                 .map(|channel| ComparedChannel {
-                    channel,
+                    column: COLUMNS[channel as usize].to_owned(),
                     measured: own(&measured, channel),
                     nominal: own(nominal, channel),
                     tolerated: own(tolerated, channel),
@@ -264,7 +265,7 @@ pub fn of_flange(
             unseen: index >= runs.len(),
             time: run.time.clone(),
             channels: vec![ComparedChannel {
-                channel: Channel::Force,
+                column: COLUMNS[Channel::Force as usize].to_owned(),
                 measured: run.force.clone(),
                 nominal: run.desired.clone(),
                 tolerated: vec![f64::NAN; run.time.len()],

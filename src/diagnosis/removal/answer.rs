@@ -161,7 +161,7 @@ fn effect(diagnosis: &RemovalDiagnosis, value: &Value) -> FoundEffect {
         subsystem: "process".to_owned(),
         confidence: stated(value.confidence, &doubts),
         doubts,
-        parameters,
+        parameters: parameters.into(),
         depends_on: depends.into_iter().map(str::to_owned).collect(),
         law: None,
         unlisted: None,

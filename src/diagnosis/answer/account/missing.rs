@@ -4,8 +4,8 @@ use super::super::details::{DetectableReport, IN_TURN, PredictionError, Remainin
 use super::super::estimate::Limit;
 use super::super::finding::Diagnosis;
 use super::super::words::{
-    CHANNEL_UNITS, CHANNEL_WORDS, capital, display_name, in_unit, listed, percent, reference_noise,
-    with_interval,
+    CHANNEL_UNITS, CHANNEL_WORDS, capital, display_name, listed, of_column, percent,
+    reference_noise, with_interval,
 };
 use super::MOST_OTHERS;
 use super::link::EXPLAINING;
@@ -15,7 +15,6 @@ use crate::diagnosis::fit::hypothesis::effect_display_name;
 use crate::diagnosis::recordings::recorded::COLUMNS;
 use crate::diagnosis::search::ruled_out::RuledOut;
 use crate::effects::meaning;
-use crate::plant::CHANNELS;
 use crate::quantity::{change, significant};
 
 impl Diagnosis {
@@ -355,15 +354,14 @@ impl Diagnosis {
 impl RemainingError {
     /// The error in words: `0.51 N RMS in the force of ride.csv (robust, 3.4 times the sensor's noise)`.
     fn words(&self, reference_noise: &str) -> String {
-        let channel = CHANNELS[self.channel];
+        let (words, unit, factor) = of_column(&self.column);
         let kept = match self.kept_back {
             true => ", which was kept back",
             false => "",
         };
         format!(
-            "{} RMS in the {} of {}{kept} (robust, {} times {reference_noise})",
-            in_unit(channel, self.rms),
-            CHANNEL_WORDS[self.channel],
+            "{} {unit} RMS in the {words} of {}{kept} (robust, {} times {reference_noise})",
+            significant(factor * self.rms, 2),
             self.recording,
             significant(self.sigmas, 2)
         )
