@@ -100,7 +100,7 @@ impl ArmCase {
 
     /// Diagnoses it; what the improved file says is what predicts.
     pub fn diagnosed(&self, start: Instant) -> Result<Diagnosed, CaseError> {
-        let ArmDiagnosis { mut answer, fitted } = diagnose(&self.input);
+        let ArmDiagnosis { mut answer, fitted } = diagnose(&self.input, &mut |_| {});
         for note in &self.notes {
             answer.note(note.clone());
         }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::error::CaseError;
 use crate::arm::JointKind;
 use crate::diagnosis::arm::input::ArmRecording;
-use crate::recorded_arm::motion::Motion;
+use crate::recorded_arm::motion::{Motion, cut_off_for};
 use crate::recorded_arm::simulate::Channel;
 use crate::recorded_arm::wrench::CHANNELS as WRENCH;
 use crate::recording::RecordingError;
@@ -13,8 +13,6 @@ use crate::recording::csv::Log;
 use crate::recording::log::read_log;
 use crate::scenario::arm_file::ArmFile;
 
-/// Cut-off of the low-pass on positions [Hz].
-const CUT_OFF: f64 = 25.0;
 /// Samples below which a log carries no information on drives.
 const LEAST_SAMPLES: usize = 100;
 /// Samples below which postures carry no information on a wrench sensor.
@@ -352,7 +350,12 @@ impl ArmLog {
         });
         ArmRecording {
             name: self.name.clone(),
-            motion: Motion::of_positions(index, &self.log.time, &self.positions, CUT_OFF),
+            motion: Motion::of_positions(
+                index,
+                &self.log.time,
+                &self.positions,
+                cut_off_for(&self.log.time, &self.positions),
+            ),
             readings: readings.collect(),
         }
     }

@@ -4,17 +4,23 @@
 //! var f = grad f^T H^-1 grad f s^2
 //! ```
 //!
-//! H curvature of half the cost, with what is known of the tolerated numbers; s what the friction of a real joint leaves beyond its textbook form.
+//! H curvature of half the cost, with what is known of the tolerated numbers; s a fifth more than the noise alone. What a law of a textbook leaves of a real
+//! joint, gear or hose is added: its size is right to [`FORM`] (Armstrong-Helouvry et al., Automatica 30 (1994), 1083: friction differs that much from one
+//! law to another on the same data).
 
 use nalgebra::{DMatrix, DVector};
 
 use super::effect::{ArmEffect, Candidate};
 use super::fit::Fit;
-use crate::recorded_arm::wrench::CHANNELS;
 use crate::recorded_arm::{ArmParameters, Quantity};
 
 /// Half-width of an interval over the standard deviation of noise alone [1]: 1.96, and a fifth for the model.
 const HALF_WIDTH: f64 = 2.4;
+
+/// Half-width of what the form of a law leaves open, as a share of its size [1].
+const FORM: f64 = 0.04;
+/// The same of the beginning and end of a push, whose course is not known [s].
+const COURSE: f64 = 0.04;
 
 /// A number with its interval.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,13 +57,36 @@ pub fn numbers(fit: &Fit, covariance: &DMatrix<f64>, effect: &Candidate) -> Vec<
                 .collect();
             let gradient = DVector::from_vec(gradient);
             let variance = gradient.dot(&(covariance * &gradient));
+            let found = value(&fit.arm);
+            let form = match (is_law_of_textbook(effect.effect), key) {
+                (_, "start_s" | "end_s") => COURSE,
+                (true, "cycles_per_turn" | "rest_rad") | (false, _) => 0.0,
+                (true, _) => FORM * found.abs(),
+            };
             Number {
                 key,
-                value: value(&fit.arm),
-                half: HALF_WIDTH * variance.max(0.0).sqrt(),
+                value: found,
+                half: (HALF_WIDTH * variance.max(0.0).sqrt()).hypot(form),
             }
         })
         .collect()
+}
+
+/// Whether an effect is a law of a textbook: not a mass, a gain or a number of a sensor.
+fn is_law_of_textbook(effect: ArmEffect) -> bool {
+    matches!(
+        effect,
+        ArmEffect::JointFriction(_)
+            | ArmEffect::Stribeck(_)
+            | ArmEffect::LoadFriction(_)
+            | ArmEffect::GearRipple(_)
+            | ArmEffect::CompliantJoint(_)
+            | ArmEffect::WarmUp(_)
+            | ArmEffect::DressPack(_)
+            | ArmEffect::Push(_)
+            | ArmEffect::Crosstalk(..)
+            | ArmEffect::WrenchDrift(_)
+    )
 }
 
 /// Covariance of a fit's numbers.
@@ -206,10 +235,4 @@ pub fn turned(fit: &Fit, covariance: &DMatrix<f64>, declared: f64) -> Number {
         value: found - turn * (found / turn).round(),
         half: HALF_WIDTH * variance.max(0.0).sqrt(),
     }
-}
-
-/// Name of a channel of the wrench.
-#[must_use]
-pub fn wrench_channel(k: usize) -> &'static str {
-    CHANNELS[k]
 }

@@ -13,8 +13,8 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::evidence::{Column, Course, Evidence};
-use super::input::Tolerated;
 use super::quadratic::least_within;
+use crate::recorded_arm::Tolerated;
 use crate::recorded_arm::{ArmParameters, Quantity};
 
 /// A number that a fit moves.

@@ -8,9 +8,9 @@ use super::effect::{ArmEffect, Candidate};
 use super::evidence::{Column, Evidence};
 use super::extent::without;
 use super::fit::{Columns, Fit, Parameter, fit, is_curved, products, weighed};
-use super::input::{ArmInput, Tolerated};
+use super::input::ArmInput;
 use super::quadratic::least_within;
-use crate::recorded_arm::{ArmParameters, Quantity};
+use crate::recorded_arm::{ArmParameters, Quantity, Tolerated};
 
 /// Length of bristles within which they are looked for, and what is known of it [rad].
 const BRISTLES: ([f64; 2], [f64; 2]) = ([1e-6, 2e-3], [2e-4, 2e-4]);

@@ -17,9 +17,10 @@ use super::fit::{Fit, Parameter};
 use crate::arm::JointKind;
 use crate::arm::chain::MAX_JOINTS;
 use crate::arm::kinematics::link_poses;
-use crate::recorded_arm::Quantity;
+use crate::recorded_arm::motion::Motion;
 use crate::recorded_arm::push::Push;
 use crate::recorded_arm::simulate::Channel;
+use crate::recorded_arm::{ArmParameters, Quantity};
 
 /// Length of a window [s].
 const WINDOW: f64 = 0.1;
@@ -156,30 +157,34 @@ fn of_recording(
     found
 }
 
+/// Torque of each joint for a unit force at the flange's origin, by its components [N m/N].
+#[must_use]
+pub fn levers(arm: &ArmParameters, motion: &Motion, sample: usize) -> [DVec3; MAX_JOINTS] {
+    let chain = &arm.chain;
+    let joints = chain.len();
+    let q: Vec<f64> = motion.position.iter().map(|q| q[sample]).collect();
+    let mut poses = [DPose3::IDENTITY; MAX_JOINTS];
+    link_poses(chain, DPose3::IDENTITY, &q, &mut poses[..joints]);
+    let flange = (poses[joints - 1] * chain.tip_from_last).translation;
+    let mut lever = [DVec3::ZERO; MAX_JOINTS];
+    for (j, joint) in chain.joints.iter().enumerate() {
+        let axis = poses[j].rotation * joint.axis;
+        lever[j] = match joint.kind {
+            JointKind::Revolute => axis.cross(flange - poses[j].translation),
+            JointKind::Prismatic => axis,
+        };
+    }
+    lever
+}
+
 /// Normal equations of all windows of a recording.
 fn windows(evidence: &Evidence, fit: &Fit, scales: &[f64], recording: usize) -> Vec<Window> {
     let input = evidence.input;
     let motion = &input.recordings[recording].motion;
-    let joints = input.nominal.joints();
     let span = motion.time.last().copied().unwrap_or(0.0) - motion.time[0];
     let mut windows = vec![Window::EMPTY; (span / WINDOW) as usize + 1];
     let levers: Vec<[DVec3; MAX_JOINTS]> = (0..motion.len())
-        .map(|sample| {
-            let q: Vec<f64> = motion.position.iter().map(|q| q[sample]).collect();
-            let mut poses = [DPose3::IDENTITY; MAX_JOINTS];
-            let chain = &fit.arm.chain;
-            link_poses(chain, DPose3::IDENTITY, &q, &mut poses[..joints]);
-            let flange = (poses[joints - 1] * chain.tip_from_last).translation;
-            let mut lever = [DVec3::ZERO; MAX_JOINTS];
-            for (j, joint) in chain.joints.iter().enumerate() {
-                let axis = poses[j].rotation * joint.axis;
-                lever[j] = match joint.kind {
-                    JointKind::Revolute => axis.cross(flange - poses[j].translation),
-                    JointKind::Prismatic => axis,
-                };
-            }
-            lever
-        })
+        .map(|sample| levers(&fit.arm, motion, sample))
         .collect();
     for (c, channel) in input.channels.iter().enumerate() {
         let Channel::Drive(joint) = channel else {
