@@ -230,6 +230,12 @@ impl Case {
         }
     }
 
+    /// Whether it is of a recorded arm.
+    #[must_use]
+    pub fn is_of_arm(&self) -> bool {
+        matches!(self.kind, Kind::Arm(_))
+    }
+
     /// Commands and encoders of the first recording of a cell.
     #[must_use]
     pub fn axes(&self) -> Option<&Axes> {
