@@ -11,6 +11,7 @@
 use super::filter::low_pass;
 use super::spline::Spline;
 use crate::stats::median;
+use std::f64::consts::TAU;
 
 /// Motion of all joints over a recording.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,6 +20,8 @@ pub struct Motion {
     pub time: Vec<f64>,
     /// Which of the recordings it is of, from 0.
     pub recording: usize,
+    /// Cut-off of the low-pass that positions went through [Hz].
+    pub cut_off: f64,
     /// Positions by joint and sample [rad or m], through the low-pass.
     pub position: Vec<Vec<f64>>,
     /// Speeds by joint and sample [rad/s or m/s].
@@ -34,6 +37,105 @@ pub fn sample_time(time: &[f64]) -> f64 {
     median(steps).unwrap_or(0.01)
 }
 
+/// Cut-off beyond which nothing is gained, and the least [Hz].
+const CUT_OFF: [f64; 2] = [25.0, 4.0];
+/// Noise of the accelerations that is borne, as a share of their own root mean square [1].
+const BORNE: f64 = 0.02;
+
+/// Root mean square of accelerations below which their noise does not matter more [rad/s2].
+const SMALL: f64 = 0.3;
+
+/// Samples at uneven times on an even grid.
+struct Grid {
+    time: Vec<f64>,
+    step: f64,
+    is_even: bool,
+}
+
+impl Grid {
+    fn of(time: &[f64]) -> Self {
+        let step = sample_time(time);
+        let first = time.first().copied().unwrap_or(0.0);
+        let span = time.last().copied().unwrap_or(0.0) - first;
+        let count = (span / step).round() as usize + 1;
+        let grid: Vec<f64> = (0..count).map(|i| first + i as f64 * step).collect();
+        let near = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-3 * step;
+        let is_even = count == time.len() && grid.iter().zip(time).all(near);
+        Self {
+            time: grid,
+            step,
+            is_even,
+        }
+    }
+
+    /// Values at the grid's times.
+    fn there(&self, time: &[f64], values: &[f64]) -> Vec<f64> {
+        if self.is_even {
+            return values.to_vec();
+        }
+        let spline = Spline::through(time, values);
+        self.time.iter().map(|t| spline.at(*t)).collect()
+    }
+
+    /// Values of the grid at other times.
+    fn back(&self, time: &[f64], values: Vec<f64>) -> Vec<f64> {
+        if self.is_even {
+            return values;
+        }
+        let spline = Spline::through(&self.time, &values);
+        time.iter().map(|t| spline.at(*t)).collect()
+    }
+}
+
+/// Cut-off at which the noise of positions leaves accelerations usable [Hz]: of positions by joint and sample.
+///
+/// ```text
+/// s_a = s_q (2 pi f)^2 sqrt(2 f/(5 r))
+/// ```
+///
+/// s_q noise of the positions, by how far a sample lies from the cubic through its neighbours; r sample rate [Hz].
+#[must_use]
+pub fn cut_off_for(time: &[f64], measured: &[Vec<f64>]) -> f64 {
+    let rate = 1.0 / sample_time(time);
+    let mut lowest = CUT_OFF[0];
+    for positions in measured {
+        let noise = noise_of(time, positions);
+        let slow = Motion::of_positions(0, time, std::slice::from_ref(positions), CUT_OFF[1]);
+        let square = slow.acceleration[0].iter().map(|a| a * a).sum::<f64>();
+        let size = (square / time.len().max(1) as f64).sqrt();
+        // Accelerations of a joint that hardly moves cost nothing.
+        let size = size.max(SMALL);
+        let mut cut_off = CUT_OFF[0];
+        while cut_off > CUT_OFF[1] {
+            let angular = (TAU * cut_off).powi(2);
+            if noise * angular * (2.0 * cut_off / (5.0 * rate)).sqrt() <= BORNE * size {
+                break;
+            }
+            cut_off *= 0.9;
+        }
+        lowest = lowest.min(cut_off);
+    }
+    lowest
+}
+
+/// Noise of positions [rad], robust.
+fn noise_of(time: &[f64], positions: &[f64]) -> f64 {
+    let errors = (2..positions.len().saturating_sub(2)).map(|i| {
+        let knots = [i - 2, i - 1, i + 1, i + 2];
+        let mut guess = 0.0;
+        for a in knots {
+            let others = knots.iter().filter(|b| **b != a);
+            let weight: f64 = others
+                .map(|b| (time[i] - time[*b]) / (time[a] - time[*b]))
+                .product();
+            guess += weight * positions[a];
+        }
+        (guess - positions[i]).abs()
+    });
+    // Of four neighbours with weights -1/6, 2/3, 2/3, -1/6 and the sample itself.
+    median(errors).unwrap_or(0.0) / (0.6745 * (1.0 + 34.0 / 36.0f64).sqrt())
+}
+
 impl Motion {
     /// Of measured positions by joint and sample [rad or m], through a low-pass of a cut-off [Hz].
     #[must_use]
@@ -46,41 +148,43 @@ impl Motion {
         let mut motion = Self {
             time: time.to_vec(),
             recording,
+            cut_off,
             position: Vec::new(),
             speed: Vec::new(),
             acceleration: Vec::new(),
         };
-        let step = sample_time(time);
-        let first = time.first().copied().unwrap_or(0.0);
-        let span = time.last().copied().unwrap_or(0.0) - first;
-        let count = (span / step).round() as usize + 1;
-        let grid: Vec<f64> = (0..count).map(|i| first + i as f64 * step).collect();
-        let is_even = count == time.len()
-            && grid
-                .iter()
-                .zip(time)
-                .all(|(a, b)| (a - b).abs() < 1e-3 * step);
+        let grid = Grid::of(time);
         for positions in measured {
-            let even = if is_even {
-                positions.clone()
-            } else {
-                let spline = Spline::through(time, positions);
-                grid.iter().map(|t| spline.at(*t)).collect()
-            };
-            let smooth = low_pass(&even, 1.0 / step, cut_off);
-            let [speed, acceleration] = derivatives(&smooth, step);
-            let back = |values: Vec<f64>| {
-                if is_even {
-                    return values;
-                }
-                let spline = Spline::through(&grid, &values);
-                time.iter().map(|t| spline.at(*t)).collect()
-            };
-            motion.position.push(back(smooth));
-            motion.speed.push(back(speed));
-            motion.acceleration.push(back(acceleration));
+            let even = grid.there(time, positions);
+            let smooth = low_pass(&even, 1.0 / grid.step, cut_off);
+            let [speed, acceleration] = derivatives(&smooth, grid.step);
+            motion.position.push(grid.back(time, smooth));
+            motion.speed.push(grid.back(time, speed));
+            motion.acceleration.push(grid.back(time, acceleration));
         }
         motion
+    }
+
+    /// A reading through the same low-pass as the positions, where that is lower than noise of its own would need.
+    #[must_use]
+    pub fn through_low_pass(&self, reading: &[f64]) -> Vec<f64> {
+        if self.cut_off >= CUT_OFF[0] || reading.iter().any(|r| !r.is_finite()) {
+            return reading.to_vec();
+        }
+        let grid = Grid::of(&self.time);
+        let even = grid.there(&self.time, reading);
+        grid.back(&self.time, low_pass(&even, 1.0 / grid.step, self.cut_off))
+    }
+
+    /// Share of a reading's noise that [`Self::through_low_pass`] leaves [1].
+    #[must_use]
+    pub fn noise_share(&self) -> f64 {
+        if self.cut_off >= CUT_OFF[0] {
+            return 1.0;
+        }
+        (2.0 * self.cut_off * sample_time(&self.time))
+            .sqrt()
+            .min(1.0)
     }
 
     /// Number of samples.

@@ -77,8 +77,42 @@ pub struct Candidate {
     pub law: Option<JointLaw>,
 }
 
+/// Stribeck velocities that gears have [rad/s].
+const STRIBECK: [f64; 2] = [2e-3, 0.4];
 const ANY: [f64; 2] = [-1e6, 1e6];
 const POSITIVE: [f64; 2] = [0.0, 1e6];
+
+impl ArmEffect {
+    /// The joint at which it acts, if it is one joint's.
+    #[must_use]
+    pub fn joint(self) -> Option<usize> {
+        match self {
+            Self::JointFriction(joint)
+            | Self::Stribeck(joint)
+            | Self::LoadFriction(joint)
+            | Self::MotorInertia(joint)
+            | Self::DriveGain(joint)
+            | Self::TorqueOffset(joint)
+            | Self::GearRipple(joint)
+            | Self::CompliantJoint(joint)
+            | Self::EncoderOffset(joint)
+            | Self::WarmUp(joint)
+            | Self::DressPack(joint)
+            | Self::Unlisted(joint) => Some(joint),
+            _ => None,
+        }
+    }
+
+    /// What a simpler effect would be of which this one is more than.
+    #[must_use]
+    pub fn simpler(self) -> Option<Self> {
+        match self {
+            Self::Stribeck(joint) => Some(Self::JointFriction(joint)),
+            Self::DressPack(joint) => Some(Self::TorqueOffset(joint)),
+            _ => None,
+        }
+    }
+}
 
 impl Candidate {
     fn linear(effect: ArmEffect, free: &[(Quantity, [f64; 2])]) -> Self {
@@ -166,7 +200,7 @@ fn of_joint(input: &ArmInput, joint: usize, all: &mut Vec<Candidate>) {
                     (Q::StribeckVelocity(joint), velocity),
                     (Q::StaticExcess(joint), 1e-3),
                 ])
-                .refined(&[(Q::StribeckVelocity(joint), [2e-3, 1.0])]),
+                .refined(&[(Q::StribeckVelocity(joint), STRIBECK)]),
         );
     }
     all.push(one(

@@ -67,8 +67,12 @@ impl<'a> Evidence<'a> {
                 .collect();
             let count = recording.motion.len();
             for (c, channel) in input.channels.iter().enumerate() {
+                let readings = match channel {
+                    Channel::Drive(_) => recording.motion.through_low_pass(&recording.readings[c]),
+                    Channel::Link(_) | Channel::Wrench(_) => recording.readings[c].clone(),
+                };
                 for sample in ENDS..count.saturating_sub(ENDS) {
-                    let reading = recording.readings[c][sample];
+                    let reading = readings[sample];
                     let counts = match channel {
                         Channel::Drive(joint) => moving[*joint][sample],
                         Channel::Link(_) | Channel::Wrench(_) => true,

@@ -70,16 +70,21 @@ pub fn changes(input: &ArmInput, arm: &ArmParameters, effects: &[Candidate]) -> 
     all
 }
 
-/// Largest change that two neighbouring samples of a channel share, over the noise [1]; only where the channel counts in the evidence.
+/// Largest change that two neighbouring samples of a channel share, over the noise that is left in what the fit compares [1].
 #[must_use]
 pub fn largest(evidence: &Evidence, changes: &[Vec<Vec<f64>>]) -> f64 {
     let mut largest: f64 = 0.0;
     for (c, rows) in evidence.rows.iter().enumerate() {
+        let is_drive = matches!(evidence.input.channels[c], Channel::Drive(_));
         for pair in rows.windows(2) {
-            if pair[0].recording == pair[1].recording {
-                let of = |row: &super::evidence::Row| changes[row.recording][c][row.sample].abs();
-                largest = largest.max(of(&pair[0]).min(of(&pair[1])));
+            let recording = pair[0].recording;
+            if recording != pair[1].recording {
+                continue;
             }
+            let motion = &evidence.input.recordings[recording].motion;
+            let share = if is_drive { motion.noise_share() } else { 1.0 };
+            let of = |row: &super::evidence::Row| changes[recording][c][row.sample].abs();
+            largest = largest.max(of(&pair[0]).min(of(&pair[1])) / share);
         }
     }
     largest

@@ -71,6 +71,22 @@ pub struct Fit {
     pub course: Course,
 }
 
+impl Fit {
+    /// Part of the cost that is not the recordings': how far numbers lie from what is known of them.
+    #[must_use]
+    pub fn prior_cost(&self) -> f64 {
+        prior_cost(&self.arm, &self.parameters)
+    }
+}
+
+fn prior_cost(arm: &ArmParameters, parameters: &[Parameter]) -> f64 {
+    let prior = |p: &Parameter| match p.prior {
+        Some([centre, deviation]) => ((p.quantity.value(arm) - centre) / deviation).powi(2),
+        None => 0.0,
+    };
+    parameters.iter().map(prior).sum()
+}
+
 /// Derivatives that were computed at one model, for fits near it.
 #[derive(Debug, Default)]
 pub struct Columns {
@@ -148,7 +164,9 @@ pub fn fit(
     let mut residuals = residuals_of(evidence, &course);
     let mut cost = cost_of(&arm, &residuals, parameters, scales);
     let mut hessian = DMatrix::zeros(0, 0);
-    for step in 0..STEPS {
+    let mut fresh = false;
+    let mut step = 0;
+    while step < STEPS {
         if step > 0 {
             columns.forget(is_curved);
         }
@@ -176,8 +194,15 @@ pub fn fit(
             }
             share *= 0.4;
         }
+        step += 1;
         let Some((tried, along, left, found)) = better else {
-            break;
+            // Derivatives of a model that was another one may point anywhere.
+            if fresh {
+                break;
+            }
+            columns.forget(|_| true);
+            fresh = true;
+            continue;
         };
         let gained = cost - found;
         (arm, course, residuals, cost) = (tried, along, left, found);
@@ -244,11 +269,7 @@ fn cost_of(
     parameters: &[Parameter],
     scales: &[f64],
 ) -> f64 {
-    let prior = |p: &Parameter| match p.prior {
-        Some([centre, deviation]) => ((p.quantity.value(arm) - centre) / deviation).powi(2),
-        None => 0.0,
-    };
-    weighed(&products(residuals, residuals), scales) + parameters.iter().map(prior).sum::<f64>()
+    weighed(&products(residuals, residuals), scales) + prior_cost(arm, parameters)
 }
 
 /// Curvature and downhill gradient of half the cost.
@@ -284,13 +305,36 @@ fn normal_equations(
     (hessian, gradient)
 }
 
-/// What channels leave beyond the noise: root mean square over it, at least one.
+/// What channels leave beyond the noise: root mean square over it.
 #[must_use]
 pub fn scales_of(residuals: &Column) -> Scales {
     let channels = residuals.iter();
     let scale = |r: &Vec<f64>| {
         let square = r.iter().map(|r| r * r).sum::<f64>() / r.len().max(1) as f64;
-        square.sqrt().max(1.0)
+        square.sqrt().max(LEAST)
     };
     channels.map(scale).collect()
+}
+
+/// Share of the noise that is declared below which a channel's is not taken to be [1].
+const LEAST: f64 = 0.2;
+/// Samples of a block within which residuals may be alike.
+const BLOCK: usize = 40;
+
+/// Samples of a channel that count as one, since what a model leaves goes on from one to the next [1].
+///
+/// ```text
+/// t = n var(mean of a block of n)/var
+/// ```
+#[must_use]
+pub fn correlation_of(residuals: &Column) -> Vec<f64> {
+    let of = |r: &Vec<f64>| {
+        let square = r.iter().map(|r| r * r).sum::<f64>() / r.len().max(1) as f64;
+        let blocks = r.chunks_exact(BLOCK);
+        let count = blocks.len().max(1) as f64;
+        let sums = blocks.map(|block| block.iter().sum::<f64>().powi(2));
+        let between = sums.sum::<f64>() / (count * BLOCK as f64);
+        (between / square.max(1e-300)).clamp(1.0, BLOCK as f64)
+    };
+    residuals.iter().map(of).collect()
 }

@@ -6,7 +6,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::effect::{ArmEffect, Candidate};
 use super::evidence::{Column, Evidence};
-use super::fit::{Columns, Fit, Parameter, fit, products, weighed};
+use super::extent::without;
+use super::fit::{Columns, Fit, Parameter, fit, is_curved, products, weighed};
 use super::input::{ArmInput, Tolerated};
 use super::quadratic::least_within;
 use crate::recorded_arm::{ArmParameters, Quantity};
@@ -17,7 +18,7 @@ const BRISTLES: ([f64; 2], [f64; 2]) = ([1e-6, 2e-3], [2e-4, 2e-4]);
 /// Difference between the stamps of currents and positions that is no effect [s]: stamps are written to a millisecond.
 const STAMPS: f64 = 5e-4;
 
-/// Decrease of the cost by a law alone below which it is not looked at further [1].
+/// Decrease of the cost by a law or ripple alone below which it is not looked at further [1].
 const OF_NO_USE: f64 = 4.0;
 
 /// Effects, fitted.
@@ -84,7 +85,7 @@ impl Hypothesis {
         let mut effects = self.effects.clone();
         effects.push(placed);
         let parameters = parameters(evidence.input, &effects);
-        columns.forget(super::fit::is_curved);
+        columns.forget(|q| is_curved(q) || matches!(q, Quantity::InverseGain(_)));
         let fit = fit(
             evidence,
             (&arm, Some(&self.fit.course)),
@@ -103,12 +104,36 @@ impl Hypothesis {
         scales: &[f64],
         columns: &mut Columns,
     ) -> Self {
-        columns.forget(super::fit::is_curved);
+        columns.forget(|_| true);
         let start = (&known.fit.arm, Some(&known.fit.course));
         Self {
             effects: known.effects.clone(),
             fit: fit(evidence, start, &known.fit.parameters, scales, columns),
         }
+    }
+
+    /// Without one of its effects, whose numbers go back to what is declared.
+    #[must_use]
+    pub fn without(
+        &self,
+        evidence: &Evidence,
+        place: usize,
+        scales: &[f64],
+        columns: &mut Columns,
+    ) -> Self {
+        let mut effects = self.effects.clone();
+        let dropped = effects.remove(place);
+        let mut arm = without(evidence.input, &self.fit.arm, &[dropped]);
+        // What another effect still needs stays as it is.
+        for parameter in effects.iter().flat_map(|effect| &effect.free) {
+            parameter
+                .quantity
+                .set(&mut arm, parameter.quantity.value(&self.fit.arm));
+        }
+        let parameters = parameters(evidence.input, &effects);
+        columns.forget(|_| true);
+        let fit = fit(evidence, (&arm, None), &parameters, scales, columns);
+        Self { effects, fit }
     }
 
     /// The same effects from the description that a list of them gives, fitted anew.
@@ -122,7 +147,7 @@ impl Hypothesis {
         let mut arm = evidence.input.nominal.clone();
         let placed: Vec<Candidate> = effects.iter().map(|e| e.applied(&mut arm)).collect();
         let parameters = parameters(evidence.input, &placed);
-        columns.forget(super::fit::is_curved);
+        columns.forget(|_| true);
         let fit = fit(evidence, (&arm, None), &parameters, scales, columns);
         Self {
             effects: placed,
@@ -199,7 +224,6 @@ impl Base {
         let mut arm = fit.arm.clone();
         let placed = candidate.applied(&mut arm);
         let course = evidence.course(&arm, Some(&fit.course));
-        let known = self.parameters.len();
         let mut hessian = self.hessian.clone();
         let mut gradient = self.gradient.clone();
         let value = |p: &Parameter, arm: &ArmParameters| p.quantity.value(arm);
@@ -228,6 +252,9 @@ impl Base {
                 gradient[i] += weighed(&products(column, start), scales) - before;
             }
         }
+        let is_one_of_many =
+            candidate.law.is_some() || matches!(candidate.effect, ArmEffect::GearRipple(_));
+        let mut alone = 0.0;
         for quantity in &placed.screened {
             let free = placed.free.iter().find(|p| p.quantity == *quantity);
             let Some(free) = free else { continue };
@@ -242,24 +269,22 @@ impl Base {
                 continue;
             }
             let column = evidence.derivative(&course, *quantity);
-            // Of thousands of laws most have nothing to do with what is left.
-            if candidate.law.is_some() && added.is_empty() && candidate.screened.len() == 1 {
-                let with = weighed(&products(&column, start), scales);
-                let own = weighed(&products(&column, &column), scales);
-                if with * with < OF_NO_USE * own {
-                    return 0.0;
-                }
+            // Of thousands of laws and ripples most have nothing to do with what is left.
+            let with = weighed(&products(&column, start), scales);
+            let own = weighed(&products(&column, &column), scales).max(1e-300);
+            alone += with * with / own;
+            if is_one_of_many && added.len() + 1 == placed.screened.len() && alone < OF_NO_USE {
+                return 0.0;
             }
             let last = hessian.nrows();
             hessian = hessian.insert_row(last, 0.0).insert_column(last, 0.0);
-            gradient = gradient.insert_row(last, weighed(&products(&column, start), scales));
+            gradient = gradient.insert_row(last, with);
             let all = (self.columns.iter().map(Arc::as_ref)).chain(&added);
             for (i, other) in all.enumerate() {
                 let product = weighed(&products(&column, other), scales);
                 hessian[(last, i)] = product;
                 hessian[(i, last)] = product;
             }
-            let own = weighed(&products(&column, &column), scales);
             hessian[(last, last)] = own * (1.0 + 1e-9) + 1e-12;
             bounds.push(room);
             added.push(column);
@@ -267,7 +292,6 @@ impl Base {
         let change = least_within(&hessian, &gradient, &bounds, &vec![0.0; bounds.len()]);
         let change = DVector::from_vec(change);
         let gained = 2.0 * gradient.dot(&change) - change.dot(&(&hessian * &change));
-        let _ = known;
         let at_start = if moved {
             let cost = |r: &Column| weighed(&products(r, r), scales);
             cost(&fit.residuals) - cost(start)

@@ -26,7 +26,13 @@ pub fn laws(evidence: &Evidence, fit: &Fit, joint: usize) -> Vec<Candidate> {
         let width = (Quantity::LawWidth(0), [2e-3 * span, 5.0 * span]);
         for factor in factors {
             let of = |shape| (shape, variable, factor);
-            let own = variable == Variable::Speed && factor == Factor::Speed;
+            // Motor inertia, a spring, viscous friction have names; a square of the speed is among the forms.
+            let named = match (variable, factor) {
+                (Variable::Angle | Variable::Acceleration | Variable::Speed, Factor::One) => true,
+                (Variable::Load, Factor::Friction) => true,
+                (Variable::Speed, Factor::Speed) => true,
+                _ => false,
+            };
             for i in 1..PLACES {
                 let at = low + span * i as f64 / PLACES as f64;
                 for shape in [Shape::SlopeAbove, Shape::SlopeBelow] {
@@ -40,7 +46,7 @@ pub fn laws(evidence: &Evidence, fit: &Fit, joint: usize) -> Vec<Candidate> {
                     all.push(law(joint, of(Shape::Step), (at, 1.0), &[]));
                 }
             }
-            if !own && !(variable == Variable::Angle && factor == Factor::One) {
+            if !named {
                 all.push(law(joint, of(Shape::Linear), (0.0, 1.0), &[]));
             }
             for shape in [Shape::Square, Shape::Cube] {
