@@ -13,8 +13,6 @@ use crate::stats::{median, median_step};
 
 /// Mark of what is not known.
 const NOT_KNOWN: &str = "NOT KNOWN";
-/// Sum of the squares of the factors of a third difference: 1, 3, 3, 1.
-const OF_NOISE: f64 = 20.0;
 /// Median size of normal noise over its standard deviation.
 const MEDIAN_SIZE: f64 = 0.6745;
 
@@ -135,7 +133,7 @@ fn wrench() -> String {
 fn sensors(arm: &Arm, seen: Option<&Seen>) -> String {
     let shown = |value: f64| format!("{value:.1e}").parse::<f64>().unwrap_or(value);
     let of = |column: &str| seen.and_then(|seen| seen.noise(column)).map(shown);
-    let from_log = "# from the log, by its differences from sample to sample";
+    let from_log = "# from the log, by how its samples scatter";
     let mut text = String::from(
         "\n[sensors]                              # one standard deviation of white noise\n",
     );
@@ -218,14 +216,25 @@ impl Seen {
         (step > 0.0).then(|| (10.0 / step).round() / 10.0)
     }
 
-    /// Noise of a column by its third differences, which motion hardly has: robust against the few that it has.
+    /// Noise of a column by what each sample differs from a cubic through its four neighbours, whatever their stamps: motion hardly shows in it, and the
+    /// median is robust against where it does.
     fn noise(&self, column: &str) -> Option<f64> {
         let values = self.values(column)?;
-        let thirds = values
-            .windows(4)
-            .map(|v| (v[3] - 3.0 * v[2] + 3.0 * v[1] - v[0]).abs());
-        let size = median(thirds.filter(|third| third.is_finite()))?;
-        let noise = size / MEDIAN_SIZE / OF_NOISE.sqrt();
+        let samples = self.log.time.windows(5).zip(values.windows(5));
+        let sizes = samples.map(|(time, values)| {
+            let others = [0, 1, 3, 4];
+            let weight = |own: usize| -> f64 {
+                let rest = others.into_iter().filter(|other| *other != own);
+                rest.map(|other| (time[2] - time[other]) / (time[own] - time[other]))
+                    .product()
+            };
+            let weights = others.map(weight);
+            let pairs = weights.iter().zip(others);
+            let between: f64 = pairs.map(|(weight, other)| weight * values[other]).sum();
+            let spread = 1.0 + weights.iter().map(|weight| weight * weight).sum::<f64>();
+            (values[2] - between).abs() / spread.sqrt()
+        });
+        let noise = median(sizes.filter(|size| size.is_finite()))? / MEDIAN_SIZE;
         (noise > 0.0).then_some(noise)
     }
 }
