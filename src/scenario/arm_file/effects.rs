@@ -170,8 +170,10 @@ fn named(
 ) -> Result<&'static ArmEffectName, ScenarioError> {
     let all: Vec<&str> = ARM_EFFECTS.iter().map(|effect| effect.name).collect();
     match table.get(NAME) {
-        Some(EffectValue::Text(name)) => arm_effect(name)
-            .ok_or_else(|| section.refuse(NAME, format!("{name:?}"), nearest(name, &all))),
+        Some(EffectValue::Text(name)) => arm_effect(name).ok_or_else(|| {
+            let expected = format!("an effect of the vocabulary; {}", nearest(name, &all));
+            section.refuse(NAME, format!("{name:?}"), expected)
+        }),
         Some(other) => Err(section.refuse(NAME, other.to_string(), "a text".to_owned())),
         None => Err(section.missing(NAME, &format!("one of {}", all.join(", ")))),
     }
