@@ -46,9 +46,7 @@ pub(super) fn text(
         text = text.replace("\ngravity", &format!("\nbase = {base:?}\ngravity"));
     }
     for (index, joint) in arm.chain.joints.iter().enumerate() {
-        let number = index + 1;
-        let logs = |signal: &str| seen.is_some_and(|s| s.has(&format!("joint_{number}_{signal}")));
-        let torque = !logs("current_a") && (logs("torque_n_m") || logs("force_n"));
+        let torque = logs_torque(seen, index + 1);
         text += &drive(&joint.name, joint.kind, torque);
     }
     text += "\n[load]                                 # declared load, fixed to the flange, in its axes; not felt by a wrench sensor\nmass_kg = 0.0\n# centre_m = [0.0, 0.0, 0.05]\n";
@@ -79,6 +77,12 @@ fn named_from(folder: &Path, path: &Path) -> String {
     let path = whole(path);
     let inside = path.strip_prefix(whole(folder)).ok().map(Path::to_owned);
     inside.unwrap_or(path).display().to_string()
+}
+
+/// Whether a log holds the torque of a joint's drive and not its current.
+fn logs_torque(seen: Option<&Seen>, number: usize) -> bool {
+    let has = |signal: &str| seen.is_some_and(|seen| seen.has(&format!("joint_{number}_{signal}")));
+    !has("current_a") && (has("torque_n_m") || has("force_n"))
 }
 
 fn head(arm: &Arm, urdf: &str, flange: &str) -> String {
@@ -148,22 +152,28 @@ fn sensors(arm: &Arm, seen: Option<&Seen>) -> String {
     };
     line("rate_hz", seen.and_then(Seen::rate), 100.0);
     line("joint_rad", of("joint_1_rad"), 1e-5);
-    let list = |signal: &str, usual: f64| {
-        let all = (1..=arm.chain.len()).map(|number| of(&format!("joint_{number}_{signal}")));
+    let list = |signals: &[&str], usual: f64| {
+        let all = (1..=arm.chain.len()).map(|number| {
+            let mut all = signals.iter();
+            all.find_map(|signal| of(&format!("joint_{number}_{signal}")))
+        });
         let values: Vec<String> = all.map(|v| format!("{:?}", v.unwrap_or(usual))).collect();
         format!("[{}]", values.join(", "))
     };
-    let torque =
-        seen.is_some_and(|seen| !seen.has("joint_1_current_a") && (seen.has("joint_1_torque_n_m")));
     let said = match seen {
         Some(_) => from_log.to_owned(),
         None => format!("# {NOT_KNOWN}"),
     };
-    let (key, list) = match torque {
-        true => ("torque_n_m", list("torque_n_m", 0.5)),
-        false => ("current_a", list("current_a", 0.05)),
-    };
-    let _ = writeln!(text, "{key} = {list} {said}, one a drive");
+    let torques = (1..=arm.chain.len()).filter(|number| logs_torque(seen, *number));
+    let torques = torques.count();
+    if torques < arm.chain.len() {
+        let list = list(&["current_a"], 0.05);
+        let _ = writeln!(text, "current_a = {list} {said}, one a drive");
+    }
+    if torques > 0 {
+        let list = list(&["torque_n_m", "force_n"], 0.5);
+        let _ = writeln!(text, "torque_n_m = {list} {said}, one a drive");
+    }
     if let Some(noise) = of("joint_1_link_rad") {
         let _ = writeln!(text, "link_rad = {noise:?} {from_log}");
     }
