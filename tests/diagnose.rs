@@ -314,7 +314,7 @@ fn bad_input_is_one_line_and_writes_nothing() {
         ),
         (
             &|b| std::fs::remove_file(b.path("case/rig.toml")).unwrap(),
-            "case holds no rig.toml; expected a folder with one",
+            "case holds no rig.toml or arm.toml; expected a folder with one",
         ),
         (
             &|b| press(&|t| of_column(t, 1, |p| p * 1e-5), b),
@@ -365,7 +365,7 @@ fn folders_that_will_not_do_are_refused() {
         (&["empty", "--out", "out"][..], "empty holds no rig.toml"),
         (
             &["empty", "--all", "--out", "out"],
-            "empty: none in it has a rig.toml",
+            "empty: none in it has a rig.toml or an arm.toml",
         ),
         (&["nowhere", "--all", "--out", "out"], "nowhere: "),
         (

@@ -168,7 +168,11 @@ pub(super) fn read(arm: &ArmFile, folder: &Path, name: &str) -> Result<ArmLog, C
     check_torques(arm, &path, &log, &channels)?;
     let mut found = Vec::with_capacity(count);
     for (joint, values) in positions.into_iter().enumerate() {
-        let column = format!("joint_{}_rad", arm.numbers[joint]);
+        let unit = match arm.nominal.chain.joints[joint].kind {
+            JointKind::Revolute => "rad",
+            JointKind::Prismatic => "m",
+        };
+        let column = format!("joint_{}_{unit}", arm.numbers[joint]);
         let Some(values) = values else {
             let expected = format!("it: positions of all {count} joints are inputs");
             return Err(column_error(&path, &column, "missing".to_owned(), expected));
