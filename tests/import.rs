@@ -390,7 +390,7 @@ fn what_was_understood_is_reported_to_people_to_programs_or_to_nobody() {
     let said = folder.idc(&["map.toml", "a.csv", "b.csv"]).words();
     for words in [
         "a.csv: 400 samples from 1.000 to 1.798 s",
-        "channel Hz least most noise steps force N 500",
+        "force N 500",
         "rows that repeat the one before them were left out: 1 (line 12)",
         "with the time of the one before them but other values were left out: 1 (line 13)",
         "a.csv and b.csv are the same data: 100 % of their rows",
