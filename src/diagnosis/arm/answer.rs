@@ -254,7 +254,11 @@ fn probability(found: &Found, effect: ArmEffect) -> f64 {
     let Some((stage, own)) =
         stage_of(found, effect).and_then(|stage| stage.accepted().map(|own| (stage, own)))
     else {
-        return MOST * 0.5;
+        // A push while the arm holds still is not searched for by a fit.
+        return match effect {
+            ArmEffect::Push(_) => MOST,
+            _ => MOST * 0.5,
+        };
     };
     let others: f64 = rivals(found, stage).iter().map(|(_, odds)| odds).sum();
     MOST * (1.0 - (-own.worth / GROWS).exp()).max(0.0) / (1.0 + others)

@@ -5,7 +5,9 @@ use super::answer::{alternatives, effects};
 use super::contact::touching;
 use super::evidence::Evidence;
 use super::extent::{changes, stretches};
+use super::held::held_pushes;
 use super::input::ArmInput;
+use super::pushed::candidate;
 use super::search::search;
 use crate::diagnosis::answer::details::{DETAILS_SCHEMA, Details};
 use crate::diagnosis::answer::{Answer, Extent, SCHEMA, Verdict};
@@ -30,7 +32,14 @@ pub struct ArmDiagnosis {
 pub fn diagnose(input: &ArmInput, observer: &mut dyn FnMut(usize)) -> ArmDiagnosis {
     let touching = touching(input);
     let evidence = Evidence::of(input, &touching);
-    let found = search(&evidence, observer);
+    let mut found = search(&evidence, observer);
+    for push in held_pushes(input, &found.best.fit.arm) {
+        let placed = candidate(push).applied(&mut found.best.fit.arm);
+        if let Some(added) = found.best.fit.arm.pushes.last_mut() {
+            *added = push;
+        }
+        found.best.effects.push(placed);
+    }
     let effects = effects(input, &found);
     let alternatives = alternatives(input, &found);
     let verdict = if effects.is_empty() {

@@ -119,15 +119,7 @@ fn reported(candidate: &Candidate) -> Vec<Reported> {
             plain("coulomb_n_m", Q::Coulomb(j)),
             plain("viscous_n_m_s_per_rad", Q::Viscous(j)),
         ],
-        ArmEffect::Stribeck(j) => vec![
-            plain("coulomb_n_m", Q::Coulomb(j)),
-            plain("viscous_n_m_s_per_rad", Q::Viscous(j)),
-            (
-                "static_n_m",
-                Box::new(move |arm| arm.drives[j].coulomb + arm.drives[j].static_excess),
-            ),
-            plain("stribeck_velocity_rad_per_s", Q::StribeckVelocity(j)),
-        ],
+        ArmEffect::Stribeck(j) => of_stribeck(j),
         ArmEffect::LoadFriction(j) => vec![plain("friction_per_load", Q::LoadFriction(j))],
         ArmEffect::MotorInertia(j) => vec![plain("inertia_kg_m2", Q::MotorInertia(j))],
         ArmEffect::DriveGain(j) => vec![(
@@ -151,17 +143,7 @@ fn reported(candidate: &Candidate) -> Vec<Reported> {
             plain("fraction", Q::WarmFraction(j)),
             plain("time_constant_s", Q::WarmTime(j)),
         ],
-        ArmEffect::Payload => {
-            let centre = |axis: usize| -> Box<dyn Fn(&ArmParameters) -> f64> {
-                Box::new(move |arm| arm.payload.centre()[axis])
-            };
-            vec![
-                plain("mass_kg", Q::PayloadMass),
-                ("centre_x_m", centre(0)),
-                ("centre_y_m", centre(1)),
-                ("centre_z_m", centre(2)),
-            ]
-        }
+        ArmEffect::Payload => of_payload(),
         ArmEffect::LinkMass(link) => vec![plain("mass_kg", Q::LinkMass(link))],
         ArmEffect::BaseTilt => vec![
             plain("roll_rad", Q::Tilt(0)),
@@ -194,6 +176,40 @@ fn reported(candidate: &Candidate) -> Vec<Reported> {
         ArmEffect::WrenchDrift(k) => vec![plain("n_per_s", Q::Drift(k))],
         ArmEffect::CurrentLate => vec![plain("delay_s", Q::Delay)],
     }
+}
+
+fn of_stribeck(j: usize) -> Vec<Reported> {
+    use Quantity as Q;
+    vec![
+        ("coulomb_n_m", Box::new(move |arm| Q::Coulomb(j).value(arm))),
+        (
+            "viscous_n_m_s_per_rad",
+            Box::new(move |arm| Q::Viscous(j).value(arm)),
+        ),
+        (
+            "static_n_m",
+            Box::new(move |arm| arm.drives[j].coulomb + arm.drives[j].static_excess),
+        ),
+        (
+            "stribeck_velocity_rad_per_s",
+            Box::new(move |arm| Q::StribeckVelocity(j).value(arm)),
+        ),
+    ]
+}
+
+fn of_payload() -> Vec<Reported> {
+    let centre = |axis: usize| -> Box<dyn Fn(&ArmParameters) -> f64> {
+        Box::new(move |arm| arm.payload.centre()[axis])
+    };
+    vec![
+        (
+            "mass_kg",
+            Box::new(|arm: &ArmParameters| Quantity::PayloadMass.value(arm)),
+        ),
+        ("centre_x_m", centre(0)),
+        ("centre_y_m", centre(1)),
+        ("centre_z_m", centre(2)),
+    ]
 }
 
 const ZEROS: [&str; 6] = [

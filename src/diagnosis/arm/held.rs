@@ -24,7 +24,7 @@ const AVERAGED: f64 = 0.1;
 /// Time over which a push changes them [s].
 const CHANGES: f64 = 0.25;
 /// Change of an averaged reading over that time, over the noise of one sample, from which something pushes [1].
-const STANDS_OUT: f64 = 4.0;
+const SIGNIFICANT: f64 = 4.0;
 /// Time between two changes that belong to one push [s].
 const ONE_PUSH: f64 = 0.9;
 /// Share of the largest departure within which a push acts [1].
@@ -78,7 +78,7 @@ fn of_recording(input: &ArmInput, arm: &ArmParameters, recording: usize) -> Vec<
         });
         largest.fold(0.0, f64::max)
     };
-    let busy: Vec<bool> = (0..count).map(|i| changes(i) > STANDS_OUT).collect();
+    let busy: Vec<bool> = (0..count).map(|i| changes(i) > SIGNIFICANT).collect();
     let mut found = Vec::new();
     let mut i = 0;
     while i < count {

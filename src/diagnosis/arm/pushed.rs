@@ -25,7 +25,7 @@ use crate::recorded_arm::{ArmParameters, Quantity};
 /// Length of a window [s].
 const WINDOW: f64 = 0.1;
 /// Gain of a window from which something pushes [1].
-const STANDS_OUT: f64 = 25.0;
+const SIGNIFICANT: f64 = 25.0;
 /// Time over which a push may go unseen [s].
 const BRIDGED: f64 = 0.35;
 /// Shares of the duration over which a push grows.
@@ -88,7 +88,9 @@ pub fn pushes(evidence: &Evidence, fit: &Fit, scales: &[f64]) -> Vec<Candidate> 
     found.iter().take(MOST).flat_map(shaped).collect()
 }
 
-fn candidate(push: Push) -> Candidate {
+/// A push as what may be missing.
+#[must_use]
+pub fn candidate(push: Push) -> Candidate {
     let free = |quantity, bounds| Parameter::free(quantity, bounds);
     let forces = [0, 1, 2].map(|axis| free(Quantity::PushForce(0, axis), [-1e4, 1e4]));
     let around = |time: f64| [time - 1.0, time + 1.0];
@@ -125,14 +127,14 @@ fn of_recording(
     let mut found = Vec::new();
     let mut w = 0;
     while w < windows.len() {
-        if windows[w].gain() < STANDS_OUT {
+        if windows[w].gain() < SIGNIFICANT {
             w += 1;
             continue;
         }
         let (start, mut last) = (w, w);
         let mut next = w + 1;
         while next < windows.len() && next <= last + bridged {
-            if windows[next].gain() >= STANDS_OUT {
+            if windows[next].gain() >= SIGNIFICANT {
                 last = next;
             }
             next += 1;
