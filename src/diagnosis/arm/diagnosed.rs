@@ -3,6 +3,7 @@
 use super::account::account;
 use super::answer::{alternatives, effects};
 use super::contact::touching;
+use super::effect::ArmEffect;
 use super::evidence::Evidence;
 use super::extent::{changes, stretches};
 use super::held::held_pushes;
@@ -66,10 +67,17 @@ pub fn diagnose(input: &ArmInput, observer: &mut dyn FnMut(usize)) -> ArmDiagnos
             ..Details::default()
         },
     };
-    ArmDiagnosis {
-        answer,
-        fitted: found.best.fit.arm,
+    let mut fitted = found.best.fit.arm;
+    // Less than a stamp's last digit is no delay.
+    if !found
+        .best
+        .effects
+        .iter()
+        .any(|e| e.effect == ArmEffect::CurrentLate)
+    {
+        fitted.delay = input.nominal.delay;
     }
+    ArmDiagnosis { answer, fitted }
 }
 
 /// Where the effects act; nowhere without any.

@@ -18,3 +18,6 @@ pub mod quadratic;
 pub mod search;
 
 pub use diagnosed::{ArmDiagnosis, diagnose};
+
+#[cfg(test)]
+mod tests;
