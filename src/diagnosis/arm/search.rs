@@ -148,10 +148,14 @@ impl Search<'_> {
 
     /// The first of those tried that is worth it, seen in the readings, and not more than a simpler one that says as much.
     fn acceptable(&self, tried: &[Tried], before: &[Stage]) -> Option<usize> {
+        // One that is contained in another, or has a name where the other has none, is the answer where it says as much.
         let simple_enough = |of: &Tried| {
-            let simpler = of.effect.simpler();
-            let enough =
-                |other: &Tried| Some(other.effect) == simpler && other.gain > ENOUGH * of.gain;
+            let unnamed = |effect| matches!(effect, ArmEffect::Unlisted(_));
+            let is_simpler = |other: ArmEffect| {
+                of.effect.simpler() == Some(other)
+                    || unnamed(of.effect) && !unnamed(other) && other.joint() == of.effect.joint()
+            };
+            let enough = |other: &Tried| is_simpler(other.effect) && other.gain > ENOUGH * of.gain;
             !tried.iter().any(enough)
         };
         let most = |effect: ArmEffect| {
