@@ -16,6 +16,7 @@ use super::hypothesis::{Hypothesis, screen};
 use super::laws::laws;
 use super::pushed::pushes;
 use crate::recorded_arm::Quantity;
+use crate::recorded_arm::law::{JointLaw, Shape};
 
 /// Worth from which an effect is taken in [1].
 const WORTH: f64 = 16.0;
@@ -139,7 +140,14 @@ impl Search<'_> {
         let laws = joints
             .iter()
             .flat_map(|joint| laws(self.evidence, &best.fit, *joint));
-        let laws: Vec<Candidate> = laws.collect();
+        // One periodic torque of a gear has a name.
+        let known = best.names();
+        let named = |law: &JointLaw| {
+            law.shape == Shape::Sine && !known.contains(&ArmEffect::GearRipple(law.joint))
+        };
+        let laws: Vec<Candidate> = laws
+            .filter(|c| !c.law.as_ref().is_some_and(named))
+            .collect();
         tried.extend(self.try_each(best, laws));
         tried.sort_by(|a, b| b.worth.total_cmp(&a.worth));
         let accepted = self.acceptable(&tried, before);
