@@ -114,7 +114,7 @@ impl ArmCase {
             None => fitted,
         };
         let comparison = self.comparison(&model);
-        let prediction = self.prediction(&comparison)?;
+        let prediction = Self::prediction(&comparison)?;
         if answer.details.noise.is_empty() {
             answer.details.noise = self.noise();
         }
@@ -167,7 +167,7 @@ impl ArmCase {
     }
 
     /// The improved arm's prediction of the recording that was kept back.
-    fn prediction(&self, comparison: &Comparison) -> Result<Option<String>, CaseError> {
+    fn prediction(comparison: &Comparison) -> Result<Option<String>, CaseError> {
         let Some(unseen) = comparison.recordings.iter().find(|run| run.unseen) else {
             return Ok(None);
         };

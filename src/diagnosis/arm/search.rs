@@ -248,8 +248,8 @@ impl Search<'_> {
         let worth = |i: usize| promised[i] - self.price(&all[i]);
         // The best way of each effect.
         let mut ways: BTreeMap<ArmEffect, usize> = BTreeMap::new();
-        for i in 0..all.len() {
-            let way = ways.entry(all[i].effect).or_insert(i);
+        for (i, candidate) in all.iter().enumerate() {
+            let way = ways.entry(candidate.effect).or_insert(i);
             if worth(i) > worth(*way) {
                 *way = i;
             }
