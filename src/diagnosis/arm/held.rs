@@ -4,7 +4,7 @@
 //! D(t)^2 = sum over joints of ((i - b(t))/s)^2
 //! ```
 //!
-//! i current or torque, averaged over [`AVERAGED`], b level between those before and after, s its noise. A push begins and ends where D passes a share of its
+//! i current or torque, averaged over a tenth of a second, b level between those before and after, s its noise. A push begins and ends where D passes a share of its
 //! largest value; its force is that of least squares over the levers, as far as friction leaves it.
 
 use glam::DVec3;
