@@ -164,9 +164,13 @@
     }
   };
 
-  const onScreen = (place) => ({ width: place.clientWidth, height: 280 });
+  const pen = document.createElement("canvas").getContext("2d");
+  pen.font = "12px system-ui, sans-serif";
+  // As high as the vertical axis's name is long, where that is more than usual.
+  const height = (content) => Math.max(280, Math.ceil(pen.measureText(content.y).width) + 90);
+  const onScreen = (place, content) => ({ width: place.clientWidth, height: height(content) });
   // The style fits it to the paper, whose width no script knows: sharp enough, and its texts not too small.
-  const onPaper = { width: 900, height: 280 };
+  const onPaper = (content) => ({ width: 900, height: height(content) });
   const build = (chart) => {
     if (chart.plot) return;
     const content = chart.content;
@@ -177,7 +181,7 @@
     const largest = (values) => Math.max(...values.map((v) => String(Number((v ?? 0).toPrecision(6))).length));
     const plain = (_, values) => values.map((v) => String(Number(v.toPrecision(6))));
     const options = {
-      ...onScreen(place),
+      ...onScreen(place, content),
       padding: [content.markers.length ? lines(content) * line + 8 : 10, 12, 0, 0],
       cursor: { sync: content.group ? { key: content.group, setSeries: false } : undefined, drag: { x: true, y: false, uni: 20 }, points: { size: 6 } },
       legend: { live: true },
@@ -193,7 +197,7 @@
     const rows = place.querySelectorAll(".u-legend .u-series");
     content.series.forEach((one, which) => { if (!one.label) rows[which + 1].style.display = "none"; });
     place.setAttribute("data-drawn", "");
-    new ResizeObserver(() => chart.plot.setSize(onScreen(place))).observe(place);
+    new ResizeObserver(() => chart.plot.setSize(onScreen(place, content))).observe(place);
     chart.figure.querySelector(".reset").addEventListener("click", () => all(chart.plot));
   };
 
@@ -238,12 +242,12 @@
     for (const details of document.querySelectorAll("details")) details.open = true;
     charts.forEach(build);
     setTheme("light");
-    for (const chart of charts) chart.plot.setSize(onPaper);
+    for (const chart of charts) chart.plot.setSize(onPaper(chart.content));
   });
   addEventListener("afterprint", () => {
     if (before) setTheme(before);
     before = null;
-    for (const chart of charts) chart.plot?.setSize(onScreen(chart.plot.root.parentElement));
+    for (const chart of charts) chart.plot?.setSize(onScreen(chart.plot.root.parentElement, chart.content));
   });
   // For tests: what is drawn, and how far it is zoomed.
   window.idcCharts = charts;

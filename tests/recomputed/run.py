@@ -310,6 +310,9 @@ class Job:
                 self.verdict(where, line)
             elif found := re.fullmatch(r"Drawn (\d+) times as large as it is\.", line):
                 self.checked.fact(where, int(found[1]), self.enlarged())
+            elif line == "Force, peaks, touch, stroke and path are those of the first pass.":
+                # The numbers themselves are recomputed from its phase alone.
+                self.checked.fact(where, len(self.numbers["passes"]) > 1, True)
             else:
                 self.checked.uncovered("viewer", line)
         for head, *rows in tables:
