@@ -10,13 +10,12 @@ use glam::{DMat3, DQuat, DVec3};
 use glamx::DPose3;
 use nalgebra::DMatrix;
 
-/// Quantities of one link for the way back of the recursion.
-#[derive(Clone, Copy)]
-struct LinkState {
+/// A link at an instant: where it is in the link before, and how it moves.
+#[derive(Debug, Clone, Copy)]
+pub struct LinkState {
     parent_from_link: DMat3,
     joint_in_parent: DVec3,
-    force: DVec3,
-    moment: DVec3,
+    motion: LinkMotion,
 }
 
 /// Motion of a link's frame, in its own axes.
@@ -82,28 +81,77 @@ impl LinkMotion {
     }
 }
 
-/// Motion of the chain's tip; arguments as in [`inverse_dynamics`].
-pub fn tip_motion(
+impl LinkState {
+    /// Of a base at rest without gravity.
+    pub const AT_REST: Self = Self {
+        parent_from_link: DMat3::IDENTITY,
+        joint_in_parent: DVec3::ZERO,
+        motion: LinkMotion {
+            acceleration: DVec3::ZERO,
+            spin: DVec3::ZERO,
+            spin_rate: DVec3::ZERO,
+        },
+    };
+
+    /// How it moves.
+    #[must_use]
+    pub fn motion(&self) -> &LinkMotion {
+        &self.motion
+    }
+
+    /// A force and a moment about the link's origin, in the axes and about the origin of the link before.
+    fn in_parent(&self, (force, moment): (DVec3, DVec3)) -> (DVec3, DVec3) {
+        let force = self.parent_from_link * force;
+        let moment = self.parent_from_link * moment + self.joint_in_parent.cross(force);
+        (force, moment)
+    }
+}
+
+/// Writes the links of a chain at an instant; arguments as in [`inverse_dynamics`].
+pub fn link_states(
     chain: &KinematicChain,
     world_from_base: DQuat,
     gravity: DVec3,
-    q: &[f64],
-    qd: &[f64],
-    qdd: &[f64],
-) -> LinkMotion {
+    [q, qd, qdd]: [&[f64]; 3],
+    out: &mut [LinkState],
+) {
     let mut motion = LinkMotion::of_base(world_from_base, gravity);
     for (index, joint) in chain.joints.iter().enumerate() {
-        motion.advance(joint, q[index], qd[index], qdd[index]);
+        let (parent_from_link, joint_in_parent) =
+            motion.advance(joint, q[index], qd[index], qdd[index]);
+        out[index] = LinkState {
+            parent_from_link,
+            joint_in_parent,
+            motion,
+        };
     }
-    motion.of_fixed(&chain.tip_from_last)
 }
 
-const AT_REST: LinkState = LinkState {
-    parent_from_link: DMat3::IDENTITY,
-    joint_in_parent: DVec3::ZERO,
-    force: DVec3::ZERO,
-    moment: DVec3::ZERO,
-};
+/// What a joint takes of a force and a moment about its origin [N m or N].
+fn taken_by(joint: &Joint, (force, moment): (DVec3, DVec3)) -> f64 {
+    match joint.kind {
+        JointKind::Revolute => joint.axis.dot(moment),
+        JointKind::Prismatic => joint.axis.dot(force),
+    }
+}
+
+/// Adds to joint torques what another body in the place of one of a chain changes.
+pub fn add_change_of_body(
+    chain: &KinematicChain,
+    links: &[LinkState],
+    place: usize,
+    [before, after]: [&BodyInertia; 2],
+    out: &mut [f64],
+) {
+    let motion = &links[place].motion;
+    let ((force, moment), (less, less_moment)) =
+        (motion.wrench_of(after), motion.wrench_of(before));
+    let mut wrench = (force - less, moment - less_moment);
+    for index in (0..=place).rev() {
+        out[index] += taken_by(&chain.joints[index], wrench);
+        wrench = links[index].in_parent(wrench);
+    }
+}
 
 /// Joint torques [N m] and forces [N] that give accelerations `qdd` at positions `q` and speeds `qd`.
 ///
@@ -123,30 +171,20 @@ pub fn inverse_dynamics(
         count <= MAX_JOINTS,
         "a chain holds at most {MAX_JOINTS} joints"
     );
-    let (q, qd, qdd, out) = (&q[..count], &qd[..count], &qdd[..count], &mut out[..count]);
-    let mut links = [AT_REST; MAX_JOINTS];
-    let mut motion = LinkMotion::of_base(world_from_base, gravity);
-    for (index, joint) in chain.joints.iter().enumerate() {
-        let (parent_from_link, arm) = motion.advance(joint, q[index], qd[index], qdd[index]);
-        let (force, moment) = motion.wrench_of(&joint.body);
-        links[index] = LinkState {
-            parent_from_link,
-            joint_in_parent: arm,
-            force,
-            moment,
-        };
-    }
-    let (mut force, mut moment) = (DVec3::ZERO, DVec3::ZERO);
-    for (index, joint) in chain.joints.iter().enumerate().rev() {
-        let link = &links[index];
-        force += link.force;
-        moment += link.moment;
-        out[index] = match joint.kind {
-            JointKind::Revolute => joint.axis.dot(moment),
-            JointKind::Prismatic => joint.axis.dot(force),
-        };
-        force = link.parent_from_link * force;
-        moment = link.parent_from_link * moment + link.joint_in_parent.cross(force);
+    let motion = [&q[..count], &qd[..count], &qdd[..count]];
+    let mut links = [LinkState::AT_REST; MAX_JOINTS];
+    link_states(chain, world_from_base, gravity, motion, &mut links);
+    torques_of(chain, &links[..count], &mut out[..count]);
+}
+
+/// Joint torques [N m] and forces [N] that move the bodies of a chain as its links move.
+pub fn torques_of(chain: &KinematicChain, links: &[LinkState], out: &mut [f64]) {
+    let mut wrench = (DVec3::ZERO, DVec3::ZERO);
+    for (index, (joint, link)) in chain.joints.iter().zip(links).enumerate().rev() {
+        let (force, moment) = link.motion.wrench_of(&joint.body);
+        wrench = (wrench.0 + force, wrench.1 + moment);
+        out[index] = taken_by(joint, wrench);
+        wrench = link.in_parent(wrench);
     }
 }
 

@@ -130,7 +130,10 @@ pub(super) fn fitting(text: &str, size: i32, width: i32) -> i32 {
     size.min(size * width / text_width(text, size).max(1))
 }
 
-/// Width of a text in the first of the fonts, rounded up.
+/// DejaVu Sans, shown where neither Arial nor its like is installed, by the width of Arial.
+const WIDEST: f64 = 1.15;
+
+/// Width of a text in the widest of the fonts, rounded up.
 pub(super) fn text_width(text: &str, size: i32) -> i32 {
     let width = |letter| match letter {
         'i' | 'j' | 'l' | '\'' => 0.23,
@@ -140,5 +143,5 @@ pub(super) fn text_width(text: &str, size: i32) -> i32 {
         'A'..='Z' => 0.72,
         _ => 0.57,
     };
-    (text.chars().map(width).sum::<f64>() * f64::from(size)).ceil() as i32
+    (text.chars().map(width).sum::<f64>() * WIDEST * f64::from(size)).ceil() as i32
 }

@@ -161,21 +161,37 @@ impl ArmParameters {
         chain
     }
 
-    /// Whether the rigid bodies of two arms move alike: all that inverse dynamics depends on.
+    /// Whether joints give under load.
+    #[must_use]
+    pub fn is_soft(&self) -> bool {
+        self.drives.iter().any(|drive| drive.compliance != 0.0)
+    }
+
+    /// Whether the rigid bodies of two arms move alike and are alike: all that inverse dynamics depends on.
     #[must_use]
     pub fn is_rigidly_as(&self, other: &Self) -> bool {
-        let zeros = |arm: &Self| -> Vec<[f64; 2]> {
-            let drives = arm.drives.iter();
-            drives.map(|d| [d.encoder_offset, d.compliance]).collect()
-        };
         let tool = |arm: &Self| arm.wrench.as_ref().map(|w| (w.height, w.tool()));
-        self.chain == other.chain
-            && self.gravity == other.gravity
-            && self.tilt == other.tilt
+        self.moves_as(other)
+            && self.chain == other.chain
             && self.load == other.load
             && self.payload == other.payload
             && tool(self) == tool(other)
-            && zeros(self) == zeros(other)
+            && self
+                .drives
+                .iter()
+                .zip(&other.drives)
+                .all(|(a, b)| a.compliance == b.compliance)
+    }
+
+    /// Whether the links of two arms move alike, whatever they weigh, as long as no joint gives.
+    #[must_use]
+    pub fn moves_as(&self, other: &Self) -> bool {
+        let drives = self.drives.iter().zip(&other.drives);
+        self.gravity == other.gravity
+            && self.tilt == other.tilt
+            && drives
+                .into_iter()
+                .all(|(a, b)| a.encoder_offset == b.encoder_offset)
     }
 }
 

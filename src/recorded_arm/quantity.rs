@@ -174,6 +174,11 @@ impl Quantity {
         if let Self::LinkMass(link) = self {
             return arm.chain.joints.get(link).map_or(0.0, |j| j.body.mass);
         }
+        // Most are of a drive, which is copied sooner than the whole arm.
+        if let Some((joint, field)) = self.of_drive() {
+            let drive = arm.drives.get(joint).copied();
+            return drive.map_or(0.0, |mut drive| *field(&mut drive));
+        }
         let mut copy = arm.clone();
         self.slot(&mut copy).map_or(0.0, |slot| *slot)
     }
@@ -215,5 +220,36 @@ impl Quantity {
             _ => 1e-2,
         };
         f64::max(usual, 1e-4 * value.abs())
+    }
+
+    /// Whether readings do not depend linearly on it.
+    #[must_use]
+    pub fn is_curved(self) -> bool {
+        matches!(
+            self,
+            Self::BristleLength(_)
+                | Self::StaticExcess(_)
+                | Self::StribeckVelocity(_)
+                | Self::WarmFraction(_)
+                | Self::WarmTime(_)
+                | Self::Ripple(..)
+                | Self::RippleCycles(_)
+                | Self::Compliance(_)
+                | Self::EncoderOffset(_)
+                | Self::PayloadMass
+                | Self::PayloadMoment(_)
+                | Self::Tilt(_)
+                | Self::SensorRotation
+                | Self::ToolMass
+                | Self::ToolCentre(_)
+                | Self::Delay
+                | Self::PushForce(..)
+                | Self::PushStart(_)
+                | Self::PushEnd(_)
+                | Self::PushEdge(_)
+                | Self::LawAmplitude(..)
+                | Self::LawPlace(_)
+                | Self::LawWidth(_)
+        )
     }
 }

@@ -5,11 +5,12 @@ use super::delay::delayed;
 use super::drive::{JointMoment, own_torque, sliding};
 use super::motion::Motion;
 use super::parameters::{ArmParameters, Drive};
-use crate::arm::chain::MAX_JOINTS;
-use crate::arm::dynamics::{LinkMotion, inverse_dynamics, tip_motion};
+use crate::arm::chain::{KinematicChain, MAX_JOINTS};
+use crate::arm::dynamics::{LinkMotion, LinkState, add_change_of_body, link_states, torques_of};
 use crate::arm::kinematics::{link_poses, point_force_torques};
 use glam::DQuat;
 use glamx::DPose3;
+use std::sync::Arc;
 
 /// A measured channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -27,8 +28,12 @@ pub enum Channel {
 pub struct RigidCourse {
     /// Torque that each gear carries, by joint and sample [N m].
     pub carried: Vec<Vec<f64>>,
-    /// Motion of the flange by sample.
-    pub flange: Vec<LinkMotion>,
+    /// Motion of the flange by sample; none without a wrench sensor.
+    pub flange: Arc<Vec<LinkMotion>>,
+    /// Links by sample and joint.
+    links: Arc<Vec<LinkState>>,
+    /// The chain with its loads.
+    chain: KinematicChain,
 }
 
 impl RigidCourse {
@@ -39,12 +44,9 @@ impl RigidCourse {
         let chain = arm.loaded_chain();
         let gravity = arm.true_gravity();
         let mut carried = vec![Vec::with_capacity(motion.len()); joints];
-        let mut flange = Vec::with_capacity(if arm.wrench.is_some() {
-            motion.len()
-        } else {
-            0
-        });
-        let soft = arm.drives.iter().any(|d| d.compliance != 0.0);
+        let mut flange = Vec::new();
+        let mut links = Vec::with_capacity(motion.len() * joints);
+        let mut along = [LinkState::AT_REST; MAX_JOINTS];
         let [mut q, mut qd, mut qdd, mut out] = [[0.0; MAX_JOINTS]; 4];
         for i in 0..motion.len() {
             for j in 0..joints {
@@ -52,27 +54,60 @@ impl RigidCourse {
                 qd[j] = motion.speed[j][i];
                 qdd[j] = motion.acceleration[j][i];
             }
-            let (q, qd, qdd, out) = (
-                &mut q[..joints],
-                &qd[..joints],
-                &qdd[..joints],
-                &mut out[..joints],
-            );
-            inverse_dynamics(&chain, DQuat::IDENTITY, gravity, q, qd, qdd, out);
-            if soft {
+            let out = &mut out[..joints];
+            let mut at = |q: &[f64], out: &mut [f64]| {
+                let motion = [&q[..joints], &qd[..joints], &qdd[..joints]];
+                link_states(&chain, DQuat::IDENTITY, gravity, motion, &mut along);
+                torques_of(&chain, &along[..joints], out);
+            };
+            at(&q, out);
+            if arm.is_soft() {
                 for j in 0..joints {
                     q[j] -= arm.drives[j].compliance * out[j];
                 }
-                inverse_dynamics(&chain, DQuat::IDENTITY, gravity, q, qd, qdd, out);
+                at(&q, out);
             }
-            for j in 0..joints {
-                carried[j].push(out[j]);
+            for (carried, out) in carried.iter_mut().zip(out) {
+                carried.push(*out);
             }
+            links.extend_from_slice(&along[..joints]);
             if arm.wrench.is_some() {
-                flange.push(tip_motion(&chain, DQuat::IDENTITY, gravity, q, qd, qdd));
+                flange.push(along[joints - 1].motion().of_fixed(&chain.tip_from_last));
             }
         }
-        Self { carried, flange }
+        Self {
+            carried,
+            flange: Arc::new(flange),
+            links: Arc::new(links),
+            chain,
+        }
+    }
+
+    /// With the bodies of an arm whose links move as those of this course.
+    #[must_use]
+    pub fn with_bodies_of(&self, arm: &ArmParameters) -> Self {
+        let joints = arm.joints();
+        let chain = arm.loaded_chain();
+        let mut carried = self.carried.clone();
+        for place in 0..joints {
+            let bodies = [&self.chain.joints[place].body, &chain.joints[place].body];
+            if bodies[0] == bodies[1] {
+                continue;
+            }
+            for (i, links) in self.links.chunks_exact(joints).enumerate() {
+                let mut out = [0.0; MAX_JOINTS];
+                add_change_of_body(&chain, links, place, bodies, &mut out);
+                for (carried, change) in carried[..=place].iter_mut().zip(out) {
+                    carried[i] += change;
+                }
+            }
+        }
+        Self {
+            carried,
+            flange: Arc::clone(&self.flange),
+            links: Arc::clone(&self.links),
+            chain,
+        }
     }
 }
 

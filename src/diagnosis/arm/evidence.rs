@@ -3,7 +3,7 @@
 //! A joint that stands still holds whatever friction it came to rest with, so its current counts only while it moves, and once it has moved over several
 //! lengths of its bristles.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::input::ArmInput;
 use crate::recorded_arm::bristles::bristles;
@@ -50,6 +50,8 @@ pub struct Course {
     arm: ArmParameters,
     bristles: Vec<Arc<Vec<Vec<f64>>>>,
     rigid: Vec<Arc<RigidCourse>>,
+    /// Values of all channels, once they were asked for.
+    values: OnceLock<Column>,
 }
 
 impl<'a> Evidence<'a> {
@@ -135,6 +137,12 @@ impl<'a> Evidence<'a> {
         out
     }
 
+    /// What the model of a course gives in all channels, over the noise.
+    pub fn values_of<'c>(&self, course: &'c Course) -> &'c Column {
+        let all = || (0..self.rows.len()).collect::<Vec<usize>>();
+        course.values.get_or_init(|| self.values(course, &all()))
+    }
+
     /// Change of the values for one unit of a quantity, at the model of a course whose own values are given.
     #[must_use]
     pub fn derivative(&self, course: &Course, quantity: Quantity) -> Column {
@@ -149,10 +157,21 @@ impl<'a> Evidence<'a> {
             quantity.set(&mut arm, value);
             self.values(&self.course(&arm, Some(course)), &asked)
         };
-        let (mut above, below) = (at(value + step), at(value - step));
-        for (above, below) in above.iter_mut().zip(&below) {
+        let mut above = at(value + step);
+        // One side says it all of what readings depend on linearly.
+        let is_straight = match quantity {
+            Quantity::Ripple(..) | Quantity::PushForce(..) => true,
+            Quantity::LinkCentre(..) => false,
+            _ => !quantity.is_curved(),
+        };
+        let (below, apart) = match course.values.get() {
+            Some(here) if is_straight => (here, step),
+            None if is_straight => (&self.values(course, &asked), step),
+            _ => (&at(value - step), 2.0 * step),
+        };
+        for (above, below) in above.iter_mut().zip(below) {
             for (above, below) in above.iter_mut().zip(below) {
-                *above = (*above - below) / (2.0 * step);
+                *above = (*above - below) / apart;
             }
             if above.iter().all(|v| *v == 0.0) {
                 above.clear();
@@ -200,6 +219,9 @@ impl<'a> Evidence<'a> {
 pub fn course_along(input: &ArmInput, arm: &ArmParameters, known: Option<&Course>) -> Course {
     let rigid = |(r, known): (usize, Option<&Course>)| match known {
         Some(known) if known.arm.is_rigidly_as(arm) => Arc::clone(&known.rigid[r]),
+        Some(known) if known.arm.moves_as(arm) && !known.arm.is_soft() && !arm.is_soft() => {
+            Arc::new(known.rigid[r].with_bodies_of(arm))
+        }
         _ => Arc::new(RigidCourse::of(arm, &input.recordings[r].motion)),
     };
     let lengths =
@@ -219,6 +241,7 @@ pub fn course_along(input: &ArmInput, arm: &ArmParameters, known: Option<&Course
         rigid: (0..input.recordings.len())
             .map(|r| rigid((r, known)))
             .collect(),
+        values: OnceLock::new(),
     }
 }
 
@@ -292,7 +315,7 @@ fn is_moved(quantity: Quantity, channel: Channel, arm: &ArmParameters) -> bool {
 #[must_use]
 pub fn slides(input: &ArmInput, recording: usize, joint: usize) -> Vec<bool> {
     let motion = &input.recordings[recording].motion;
-    let still = STANDSTILL * input.nominal.chain.joints[joint].velocity.clamp(0.5, 3.0);
+    let still = STANDSTILL * input.nominal.chain.joints[joint].velocity.clamp(0.5, 2.0);
     let length = input.nominal.drives[joint].bristle_length;
     let (position, speed, time) = (&motion.position[joint], &motion.speed[joint], &motion.time);
     // It counts as come to rest at the start, and whenever it has stood for a time.

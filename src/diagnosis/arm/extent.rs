@@ -73,6 +73,8 @@ pub fn changes(input: &ArmInput, arm: &ArmParameters, effects: &[Candidate]) -> 
 /// Largest change that two neighbouring samples of a channel share, over the noise that is left in what the fit compares [1].
 #[must_use]
 pub fn largest(evidence: &Evidence, changes: &[Vec<Vec<f64>>]) -> f64 {
+    let recordings = evidence.input.recordings.iter();
+    let shares: Vec<f64> = recordings.map(|r| r.motion.noise_share()).collect();
     let mut largest: f64 = 0.0;
     for (c, rows) in evidence.rows.iter().enumerate() {
         let is_drive = matches!(evidence.input.channels[c], Channel::Drive(_));
@@ -81,8 +83,7 @@ pub fn largest(evidence: &Evidence, changes: &[Vec<Vec<f64>>]) -> f64 {
             if recording != pair[1].recording {
                 continue;
             }
-            let motion = &evidence.input.recordings[recording].motion;
-            let share = if is_drive { motion.noise_share() } else { 1.0 };
+            let share = if is_drive { shares[recording] } else { 1.0 };
             let of = |row: &super::evidence::Row| changes[recording][c][row.sample].abs();
             largest = largest.max(of(&pair[0]).min(of(&pair[1])) / share);
         }

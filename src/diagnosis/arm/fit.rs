@@ -88,7 +88,7 @@ fn prior_cost(arm: &ArmParameters, parameters: &[Parameter]) -> f64 {
 }
 
 /// Derivatives that were computed at one model, for fits near it.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Columns {
     known: BTreeMap<Quantity, Arc<Column>>,
     products: BTreeMap<(Quantity, Quantity), Vec<f64>>,
@@ -126,9 +126,24 @@ pub fn products(a: &Column, b: &Column) -> Vec<f64> {
             if a.is_empty() || b.is_empty() {
                 return 0.0;
             }
-            a.iter().zip(b).map(|(a, b)| a * b).sum()
+            dot(a, b)
         })
         .collect()
+}
+
+/// Sum of products, in lanes that are added in a fixed order.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    const LANES: usize = 8;
+    let mut sums = [0.0; LANES];
+    let (a, b) = (a.chunks_exact(LANES), b.chunks_exact(LANES));
+    let rest = a.remainder().iter().zip(b.remainder());
+    let rest: f64 = rest.map(|(a, b)| a * b).sum();
+    for (a, b) in a.zip(b) {
+        for lane in 0..LANES {
+            sums[lane] += a[lane] * b[lane];
+        }
+    }
+    sums.iter().sum::<f64>() + rest
 }
 
 /// Sum over channels of products over the squares of the scales.
@@ -168,7 +183,7 @@ pub fn fit(
     let mut step = 0;
     while step < STEPS {
         if step > 0 {
-            columns.forget(is_curved);
+            columns.forget(Quantity::is_curved);
         }
         let (curvature, gradient) =
             normal_equations(evidence, &course, &residuals, parameters, scales, columns);
@@ -220,43 +235,10 @@ pub fn fit(
     }
 }
 
-/// Quantities on which readings do not depend linearly.
-#[must_use]
-pub fn is_curved(quantity: Quantity) -> bool {
-    use Quantity as Q;
-    matches!(
-        quantity,
-        Q::BristleLength(_)
-            | Q::StaticExcess(_)
-            | Q::StribeckVelocity(_)
-            | Q::WarmFraction(_)
-            | Q::WarmTime(_)
-            | Q::Ripple(..)
-            | Q::RippleCycles(_)
-            | Q::Compliance(_)
-            | Q::EncoderOffset(_)
-            | Q::PayloadMass
-            | Q::PayloadMoment(_)
-            | Q::Tilt(_)
-            | Q::SensorRotation
-            | Q::ToolMass
-            | Q::ToolCentre(_)
-            | Q::Delay
-            | Q::PushForce(..)
-            | Q::PushStart(_)
-            | Q::PushEnd(_)
-            | Q::PushEdge(_)
-            | Q::LawAmplitude(..)
-            | Q::LawPlace(_)
-            | Q::LawWidth(_)
-    )
-}
-
 /// What a course leaves of the measured values, over the noise.
 #[must_use]
 pub fn residuals_of(evidence: &Evidence, course: &Course) -> Column {
-    let all: Vec<usize> = (0..evidence.rows.len()).collect();
-    let mut values = evidence.values(course, &all);
+    let mut values = evidence.values_of(course).clone();
     for (values, measured) in values.iter_mut().zip(&evidence.measured) {
         for (value, measured) in values.iter_mut().zip(measured) {
             *value = measured - *value;

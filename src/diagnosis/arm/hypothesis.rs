@@ -3,11 +3,12 @@
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 use super::effect::{ArmEffect, Candidate};
 use super::evidence::{Column, Evidence};
 use super::extent::without;
-use super::fit::{Columns, Fit, Parameter, fit, is_curved, products, residuals_of, weighed};
+use super::fit::{Columns, Fit, Parameter, fit, products, residuals_of, weighed};
 use super::input::ArmInput;
 use super::quadratic::least_within;
 use crate::recorded_arm::{ArmParameters, Quantity, Tolerated};
@@ -85,7 +86,7 @@ impl Hypothesis {
         let mut effects = self.effects.clone();
         effects.push(placed);
         let parameters = parameters(evidence.input, &effects);
-        columns.forget(|q| is_curved(q) || matches!(q, Quantity::InverseGain(_)));
+        columns.forget(|q| q.is_curved() || matches!(q, Quantity::InverseGain(_)));
         let fit = fit(
             evidence,
             (&arm, Some(&self.fit.course)),
@@ -172,8 +173,10 @@ pub fn screen(
     columns: &mut Columns,
 ) -> Vec<f64> {
     let base = Base::of(evidence, hypothesis, scales, columns);
-    let promised = |candidate: &Candidate| {
-        let promised = base.promised(evidence, hypothesis, candidate, scales);
+    let promised: Vec<f64> = (candidates.par_iter())
+        .map(|candidate| base.promised(evidence, hypothesis, candidate, scales))
+        .collect();
+    let whole = |(candidate, promised): (&Candidate, f64)| {
         // Where one step leads nowhere, a whole fit says what there is to gain.
         if promised.is_finite() {
             return promised;
@@ -181,7 +184,7 @@ pub fn screen(
         let whole = hypothesis.with(evidence, candidate, scales, columns);
         hypothesis.fit.cost - whole.fit.cost
     };
-    candidates.iter().map(promised).collect()
+    candidates.iter().zip(promised).map(whole).collect()
 }
 
 /// Normal equations of a hypothesis, to which a candidate's are added.

@@ -24,9 +24,14 @@ pub fn least_within(
     let mut x: Vec<f64> = (start.iter().zip(bounds))
         .map(|(x, b)| x.clamp(b[0], b[1]))
         .collect();
-    let mut free = vec![true; count];
+    // What lies on a bound and is pulled outwards stays there.
+    let pull = |x: &[f64]| gradient - hessian * DVector::from_column_slice(x);
+    let downhill = pull(&x);
+    let is_free = |i: usize| {
+        !(x[i] <= bounds[i][0] && downhill[i] < 0.0 || x[i] >= bounds[i][1] && downhill[i] > 0.0)
+    };
+    let mut free: Vec<bool> = (0..count).map(is_free).collect();
     for _ in 0..MOST * count.max(1) {
-        let pull = |x: &[f64]| gradient - hessian * DVector::from_column_slice(x);
         let downhill = pull(&x);
         let Some(step) = newton_step(hessian, &downhill, &free) else {
             return x;

@@ -8,6 +8,8 @@
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
+
 use super::effect::{ArmEffect, Candidate, candidates};
 use super::evidence::Evidence;
 use super::extent::{changes, largest};
@@ -263,17 +265,18 @@ impl Search<'_> {
             .filter(|(place, i)| *place < 2 || worth(**i) > 0.0)
             .map(|(_, i)| *i)
             .collect();
-        let mut tried = Vec::new();
-        for i in promising {
-            let found = hypothesis.with(evidence, &all[i], &scales, &mut self.columns);
+        let fitted = |i: usize| {
+            let mut columns = self.columns.clone();
+            let found = hypothesis.with(evidence, &all[i], &scales, &mut columns);
             let gain = gain(&hypothesis.fit, &found.fit);
-            tried.push(Tried {
+            Tried {
                 effect: all[i].effect,
                 gain,
                 worth: gain - self.price(&all[i]),
                 hypothesis: found,
-            });
-        }
+            }
+        };
+        let mut tried: Vec<Tried> = promising.into_par_iter().map(fitted).collect();
         tried.sort_by(|a, b| b.worth.total_cmp(&a.worth));
         tried
     }

@@ -201,3 +201,30 @@ fn a_push_on_an_arm_that_holds_still_is_found_when_it_was() {
     assert!((found[0].start - 6.0).abs() < 0.15 && (found[0].end - 8.0).abs() < 0.15);
     assert_eq!(found[0].recording, 2);
 }
+
+/// Bodies that are exchanged along known links carry what the whole recursion gives, link by link and with another load.
+#[test]
+fn exchanged_bodies_are_carried_as_a_whole_recursion_says() {
+    let (arm, motion) = (nominal(), motion(0, false));
+    let known = RigidCourse::of(&arm, &motion);
+    let mut other = arm.clone();
+    Quantity::LinkMass(0).set(&mut other, 7.0);
+    Quantity::LinkCentre(1, 2).set(&mut other, 0.13);
+    Quantity::PayloadMass.set(&mut other, 2.5);
+    Quantity::PayloadMoment(0).set(&mut other, 0.4);
+    assert!(arm.moves_as(&other) && !arm.is_rigidly_as(&other));
+    let (found, expected) = (
+        known.with_bodies_of(&other),
+        RigidCourse::of(&other, &motion),
+    );
+    for (joint, (found, expected)) in found.carried.iter().zip(&expected.carried).enumerate() {
+        for (i, (found, expected)) in found.iter().zip(expected).enumerate() {
+            assert!(
+                (found - expected).abs() < 1e-9,
+                "joint {joint}, sample {i}: {found}, {expected}"
+            );
+        }
+    }
+    Quantity::EncoderOffset(1).set(&mut other, 0.01);
+    assert!(!arm.moves_as(&other));
+}
