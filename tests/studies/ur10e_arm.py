@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """A real UR10e (../shared/recordings/ur10e_arm): currents of one free path predicted by the arm fitted to another; load; pushes. Standard library only.
 
-    tests/studies/ur10e_arm.py IDC OUT [--fit free_12harm_30s.csv] [--predict free_14harm_50s.csv]
+    tests/studies/ur10e_arm.py IDC OUT [--fit free_12harm_30s.csv] [--predict free_14harm_50s.csv] [--whole]
 
 Writes a case into OUT, diagnoses it with the program IDC, and prints for each joint the RMS of the residual over the RMS of the current, both through a
 zero-phase Butterworth low-pass of order four at 6 Hz, at 100 Hz, while any joint moves faster than 0.01 rad/s. Gains are free from a quarter below the lower to
@@ -19,6 +19,8 @@ RECORDINGS = pathlib.Path(__file__).resolve().parents[3] / "shared" / "recording
 GAINS = [(10.0, 14.9), (10.7, 13.3), (8.5, 11.1), (9.0, 10.6), (9.5, 11.0), (10.1, 11.5)]
 NOISE = [0.12, 0.12, 0.07, 0.025, 0.03, 0.025]
 ASKED = [8.2, 5.1, 4.2, 10.8, 9.1, 7.6]
+# Dry friction by the regression of the README, joints 1 to 4 [A].
+DRY_A = [1.36, 1.41, 0.69, 0.26]
 
 
 def write_log(source, target):
@@ -107,25 +109,59 @@ def shares(measured, predicted):
     return out
 
 
+def diagnosed(idc, case, result):
+    """The answer to a case, and what it names, a line each."""
+    subprocess.run([idc, "diagnose", case, "--out", result, "--force"], check=True, stdout=subprocess.DEVNULL)
+    answer = json.loads((result / "diagnosis.json").read_text())
+    print(f"{case.name}: {answer['verdict']}, {answer['seconds']:.1f} s")
+    for effect in answer["effects"]:
+        numbers = {k: v if not isinstance(v, dict) else [round(v[q], 4) for q in ("value", "low", "high")] for k, v in effect["parameters"].items()}
+        print(f'  {effect["confidence"]:.2f} {effect["name"]} {numbers} {(effect.get("law") or {}).get("is", "")}')
+    return answer
+
+
+def write_case_on(folder, improved, fit, predict):
+    """A case whose description is what another one found."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "ur10e.urdf").write_text((RECORDINGS / "ur10e.urdf").read_text())
+    text = re.sub(r"(?m)^urdf = .*", 'urdf = "ur10e.urdf"', improved.read_text())
+    text = re.sub(r"(?m)^fit = .*", f'fit = ["{fit}"]', text)
+    (folder / "arm.toml").write_text(re.sub(r"(?m)^predict = .*", f'predict = "{predict}"', text))
+    for name in (fit, predict):
+        write_log(RECORDINGS / name, folder / name)
+
+
+def friction(drives):
+    """Dry friction that the drives' table states [A], beside the published regression's."""
+    with open(drives) as file:
+        rows = list(csv.DictReader(file))
+    for row, asked in zip(rows, DRY_A):
+        print(f"  {row['joint']}: {row['dry_friction_line_a']} A, regression {asked} A")
+
+
 def main():
     ap = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     ap.add_argument("idc")
     ap.add_argument("out", type=pathlib.Path)
     ap.add_argument("--fit", default="free_12harm_30s.csv", help="recordings, with commas between")
     ap.add_argument("--predict", default="free_14harm_50s.csv")
+    ap.add_argument("--whole", action="store_true", help="the load on the flange, none on the free path, and the pushes as well")
     a = ap.parse_args()
-    case, result = a.out / "case", a.out / "result"
+    case, result = a.out / "free", a.out / "free_result"
     write_case(case, a.fit.split(","), a.predict)
-    subprocess.run([a.idc, "diagnose", case, "--out", result, "--force"], check=True, stdout=subprocess.DEVNULL)
-    answer = json.loads((result / "diagnosis.json").read_text())
-    for effect in answer["effects"]:
-        numbers = {k: v if not isinstance(v, dict) else [round(v[q], 4) for q in ("value", "low", "high")] for k, v in effect["parameters"].items()}
-        print(f'{effect["confidence"]:.2f} {effect["name"]} {numbers} {(effect.get("law") or {}).get("is", "")}')
+    diagnosed(a.idc, case, result)
+    friction(result / "drives.csv")
     found = shares(read(case / a.predict), read(result / "prediction.csv"))
     print("joint   " + " ".join(f"{j:6d}" for j in range(1, 7)))
     print("left, % " + " ".join(f"{s:6.1f}" for s in found))
     print("asked, %" + " ".join(f"{s:6.1f}" for s in ASKED))
-    print(f'{answer["seconds"]:.1f} s')
+    if not a.whole:
+        return
+    for name, fit, predict in (("loaded", "loaded_14harm_50s.csv", a.predict), ("free_again", a.predict, a.fit.split(",")[0])):
+        write_case_on(a.out / name, result / "improved.toml", fit, predict)
+        diagnosed(a.idc, a.out / name, a.out / f"{name}_result")
+    write_case(a.out / "push", ["push_1.csv"], a.predict)
+    diagnosed(a.idc, a.out / "push", a.out / "push_result")
 
 
 if __name__ == "__main__":

@@ -4,8 +4,8 @@
 //! var f = grad f^T H^-1 grad f s^2
 //! ```
 //!
-//! H curvature of half the cost, with what is known of the tolerated numbers; s a fifth more than the noise alone. What a law of a textbook leaves of a real
-//! joint, gear or hose is added: its size is right to four hundredths (Armstrong-Helouvry et al., Automatica 30 (1994), 1083: friction differs that much from one
+//! H curvature of half the cost, with what is known of the tolerated numbers; s an eighth more than the noise alone. What a law of a textbook leaves of a real
+//! joint, gear or hose is added: its size is right to three hundredths (Armstrong-Helouvry et al., Automatica 30 (1994), 1083: friction differs that much from one
 //! law to another on the same data).
 
 use nalgebra::{DMatrix, DVector};
@@ -14,11 +14,11 @@ use super::effect::{ArmEffect, Candidate};
 use super::fit::Fit;
 use crate::recorded_arm::{ArmParameters, Quantity};
 
-/// Half-width of an interval over the standard deviation of noise alone [1]: 1.96, and a fifth for the model.
-const HALF_WIDTH: f64 = 2.4;
+/// Half-width of an interval over the standard deviation of noise alone [1]: 1.96, and an eighth for the model.
+const HALF_WIDTH: f64 = 2.2;
 
 /// Half-width of what the form of a law leaves open, as a share of its size [1].
-const FORM: f64 = 0.04;
+const FORM: f64 = 0.03;
 /// The same of the beginning and end of a push, whose course is not known [s].
 const COURSE: f64 = 0.04;
 
