@@ -34,11 +34,13 @@ enum Signal {
 }
 
 /// Ends of columns of a joint, of a prismatic one too.
-const SIGNALS: [(&str, Signal); 11] = [
+const SIGNALS: [(&str, Signal); 12] = [
     ("command_rad", Signal::Command),
     ("command_m", Signal::Command),
     ("rad_per_s", Signal::Speed),
     ("m_per_s", Signal::Speed),
+    // As an import writes it.
+    ("velocity_rad_per_s", Signal::Speed),
     ("link_rad", Signal::Link),
     ("link_m", Signal::Link),
     ("current_a", Signal::Current),

@@ -17,6 +17,7 @@ mod joints;
 mod long;
 mod marks;
 mod names;
+mod numbered;
 mod rate;
 mod sections;
 mod seen;

@@ -256,15 +256,22 @@ impl Search<'_> {
                 *way = i;
             }
         }
-        let mut order: Vec<usize> = ways.into_values().collect();
+        let mut order: Vec<usize> = ways.values().copied().collect();
         order.sort_by(|a, b| worth(*b).total_cmp(&worth(*a)));
         order.truncate(FITTED);
-        let promising: Vec<usize> = order
+        let mut promising: Vec<usize> = order
             .iter()
             .enumerate()
             .filter(|(place, i)| *place < 2 || worth(**i) > 0.0)
             .map(|(_, i)| *i)
             .collect();
+        // What another contains is held against it, whatever it promised.
+        for i in promising.clone() {
+            let contained = all[i].effect.simpler().and_then(|effect| ways.get(&effect));
+            if let Some(contained) = contained.filter(|contained| !promising.contains(contained)) {
+                promising.push(*contained);
+            }
+        }
         let fitted = |i: usize| {
             let mut columns = self.columns.clone();
             let found = hypothesis.with(evidence, &all[i], &scales, &mut columns);

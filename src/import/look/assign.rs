@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::names::{self, Role, Said, Thing};
-use super::seen::{Because, Cells, Seen};
+use super::seen::{Because, Cells, SaidUnit, Seen};
 use crate::import::map::Column;
 use crate::recording::{Unit, schema};
 
@@ -21,6 +21,8 @@ pub(super) struct Pick {
     pub because: Because,
     /// Unit in SI that it must have.
     pub kind: Unit,
+    /// Unit that more than the column itself says.
+    pub unit: Option<SaidUnit>,
     worth: i32,
 }
 
@@ -32,6 +34,7 @@ impl Pick {
             place,
             because,
             kind,
+            unit: None,
             worth: 0,
         }
     }
@@ -166,6 +169,7 @@ fn pick(place: usize, column: &Seen) -> Option<Pick> {
         place,
         because,
         kind: *names::units_of(thing).first()?,
+        unit: None,
         worth,
     })
 }

@@ -3,6 +3,7 @@
 use super::assign::{Pick, assign};
 use super::clocks::{Clocks, clocks};
 use super::joints::joints;
+use super::numbered::numbered_joints;
 use super::seen::{Looked, Seen, TimeSeen};
 use super::time::{self, TimeChoice};
 use crate::import::map::Column;
@@ -53,9 +54,13 @@ fn rate(section: &Section) -> f64 {
 
 /// Quantities of the device and joints of an arm in columns, but for those at some places and those that are given.
 fn all_picks(columns: &[Seen], taken: &[usize], given: &[String]) -> Vec<Pick> {
-    let mut picks = assign(columns, taken);
-    let of_device = picks.iter().map(|pick| pick.place);
-    let taken: Vec<usize> = taken.iter().copied().chain(of_device).collect();
+    // What has the number of a joint is nothing of the device.
+    let of_arm = numbered_joints(columns, taken);
+    let places = |picks: &[Pick]| picks.iter().map(|pick| pick.place).collect::<Vec<_>>();
+    let taken = [taken, &places(&of_arm)].concat();
+    let mut picks = assign(columns, &taken);
+    let taken = [taken, places(&picks)].concat();
+    picks.extend(of_arm);
     picks.extend(joints(columns, &taken));
     picks.retain(|pick| !given.iter().any(|quantity| *quantity == pick.quantity));
     picks

@@ -252,9 +252,10 @@ fn channel(
     }
     page.found
         .push((pick.quantity.to_string(), described(column)));
-    let said = column
+    let said = pick
         .unit
         .as_ref()
+        .or(column.unit.as_ref())
         .filter(|said| said.unit.si == pick.kind);
     let (unit, because) = match said {
         Some(said) => (said.unit, said.because.clone()),
