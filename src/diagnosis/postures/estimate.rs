@@ -49,9 +49,18 @@ fn values(fit: &Fit, gravity: Vector3<f64>) -> [f64; COUNT] {
     };
     let tilt = weight.angle(&gravity);
     [
-        weight.norm(), tilt, angle,
-        zero.x, zero.y, zero.z, torque_zero.x, torque_zero.y, torque_zero.z,
-        centre.x, centre.y, centre.z,
+        weight.norm(),
+        tilt,
+        angle,
+        zero.x,
+        zero.y,
+        zero.z,
+        torque_zero.x,
+        torque_zero.y,
+        torque_zero.z,
+        centre.x,
+        centre.y,
+        centre.z,
     ]
 }
 

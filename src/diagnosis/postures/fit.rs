@@ -138,7 +138,8 @@ fn derivatives(postures: &[Posture], frame: Frame, state: &State) -> DMatrix<f64
         let to_reading = state.turn * axes;
         let load = from_base * weight;
         let mut put = |row: usize, column: usize, block: Matrix3<f64>| {
-            rows.fixed_view_mut::<3, 3>(row + 3 * i, column).copy_from(&block);
+            rows.fixed_view_mut::<3, 3>(row + 3 * i, column)
+                .copy_from(&block);
         };
         put(0, 0, to_reading);
         put(0, 3, to_reading * from_base);
@@ -154,7 +155,8 @@ fn derivatives(postures: &[Posture], frame: Frame, state: &State) -> DMatrix<f64
             let first = if turning == 1 { 2 } else { 0 };
             for column in 0..turning {
                 let of = by_turn.column(first + column);
-                rows.fixed_view_mut::<3, 1>(row + 3 * i, NUMBERS + column).copy_from(&of);
+                rows.fixed_view_mut::<3, 1>(row + 3 * i, NUMBERS + column)
+                    .copy_from(&of);
             }
         }
     }
@@ -188,7 +190,11 @@ fn from(postures: &[Posture], frame: Frame, turn: Matrix3<f64>, noise: [f64; 2])
     let least = |sizes: [f64; 2]| [sizes[0].max(noise[0]), sizes[1].max(noise[1])];
     let scatter_of = |rows: &DVector<f64>| {
         let half = rows.len() / 2;
-        least([0, half].map(|at| (rows.rows(at, half).norm_squared() / freedom).sqrt().max(1e-9)))
+        least([0, half].map(|at| {
+            (rows.rows(at, half).norm_squared() / freedom)
+                .sqrt()
+                .max(1e-9)
+        }))
     };
     let mut state = State {
         turn,
@@ -207,7 +213,11 @@ fn from(postures: &[Posture], frame: Frame, turn: Matrix3<f64>, noise: [f64; 2])
         for i in 0..normal.nrows() {
             normal[(i, i)] += damping * normal[(i, i)] + 1e-12;
         }
-        let change = normal.cholesky()?.solve(&slopes.tr_mul(&rows)).column(0).into_owned();
+        let change = normal
+            .cholesky()?
+            .solve(&slopes.tr_mul(&rows))
+            .column(0)
+            .into_owned();
         let next = state.stepped(&change, frame.turn);
         let next_left = residuals(postures, frame, &next);
         let cost = likelihood(&next_left, scatter_of(&next_left), freedom);

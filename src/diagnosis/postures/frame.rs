@@ -153,7 +153,8 @@ impl Turn {
             // The 24 turns of a cube: each of six axes to where z was, then about it.
             Self::Free => {
                 let tops = [(0, 0), (0, 1), (0, 2), (0, 3), (1, 1), (1, 3)];
-                let of_top = |(axis, count)| (0..4).map(move |turn| about(2, turn) * about(axis, count));
+                let of_top =
+                    |(axis, count)| (0..4).map(move |turn| about(2, turn) * about(axis, count));
                 tops.into_iter().flat_map(of_top).collect()
             }
         }

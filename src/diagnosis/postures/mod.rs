@@ -33,7 +33,10 @@ pub struct Posture {
 /// Sine of the turn, root mean square, about the axis that postures turn the sensor about least [1]: 0 where all turn about one.
 #[must_use]
 pub fn least_turn(postures: &[Posture]) -> f64 {
-    let sum = postures.iter().map(|p| p.base_from_sensor).sum::<Matrix3<f64>>();
+    let sum = postures
+        .iter()
+        .map(|p| p.base_from_sensor)
+        .sum::<Matrix3<f64>>();
     let mean = sum / postures.len().max(1) as f64;
     (1.0 - mean.singular_values().max().powi(2)).max(0.0).sqrt()
 }

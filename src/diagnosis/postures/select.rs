@@ -38,7 +38,9 @@ pub struct Candidate {
 /// All frames that the postures can be fitted in, the likeliest first; nothing where they do not tell the numbers.
 #[must_use]
 pub fn candidates(postures: &[Posture], belief: &Belief) -> Vec<Candidate> {
-    let fits = Frame::all().into_iter().filter_map(|frame| fit(postures, frame, belief.noise));
+    let fits = Frame::all()
+        .into_iter()
+        .filter_map(|frame| fit(postures, frame, belief.noise));
     let mut weighed: Vec<(f64, Fit)> = fits
         .filter(|fit| !is_within(fit, belief.turn))
         .map(|fit| signed(fit, belief.gravity))

@@ -40,7 +40,11 @@ fn planted(seed: u64, axes: Axes, turn: f64, inverse: bool, sign: f64) -> Vec<Po
             let mounted = Rotation3::from_euler_angles(0.0, 0.0, turn);
             let felt = |own: Vector3<f64>, zero: Vector3<f64>| {
                 let read = mounted.inverse() * own * sign + zero;
-                if axes == Axes::Base { pose * read } else { read }
+                if axes == Axes::Base {
+                    pose * read
+                } else {
+                    read
+                }
             };
             let mut noise = |size: f64| Vector3::new(normal(), normal(), normal()) * size;
             let logged = if inverse { pose.inverse() } else { pose };
@@ -55,7 +59,12 @@ fn planted(seed: u64, axes: Axes, turn: f64, inverse: bool, sign: f64) -> Vec<Po
 
 #[test]
 fn each_frame_is_told_from_all_others() {
-    let of = |axes, inverse, opposite| Frame { axes, inverse, opposite, turn: Turn::None };
+    let of = |axes, inverse, opposite| Frame {
+        axes,
+        inverse,
+        opposite,
+        turn: Turn::None,
+    };
     for axes in [Axes::Sensor, Axes::Base] {
         for inverse in [false, true] {
             for opposite in [false, true] {
@@ -76,10 +85,17 @@ fn turned_axes_are_told_with_their_angle() {
     for angle in [-0.5, 0.2, 1.0, std::f64::consts::FRAC_PI_2] {
         let postures = planted(5, Axes::Sensor, angle, false, 1.0);
         let best = &candidates(&postures, &BELIEF)[0];
-        assert!(best.fit.frame.is_turned_about_z(), "{angle}: {:?}", best.fit.frame);
+        assert!(
+            best.fit.frame.is_turned_about_z(),
+            "{angle}: {:?}",
+            best.fit.frame
+        );
         if best.fit.frame.turn == Turn::AboutZ {
             let [turn, low, high] = numbers(&postures, &best.fit, BELIEF.gravity, [0.0; 2]).turn;
-            assert!(low < angle && angle < high && high - low < 0.1, "{angle}: {turn}");
+            assert!(
+                low < angle && angle < high && high - low < 0.1,
+                "{angle}: {turn}"
+            );
         }
     }
 }
