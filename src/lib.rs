@@ -10,6 +10,7 @@
 //! - [`device`]: the device made of them
 //! - [`mesh_file`]: STL, OBJ, COLLADA, PLY and glTF files as triangles
 //! - [`arm`]: the robot arm from URDF: kinematics, dynamics
+//! - [`recorded_arm`]: a recorded arm as one description of numbers, driven by the motion that was measured
 //! - [`removal`]: what a turning tool takes off an edge
 //! - [`workpiece`]: mesh, edges, burrs, where a ball touches
 //! - [`collision`]: bodies that must not meet, checked along a motion

@@ -290,7 +290,7 @@ fn obstacles() {
     let outcome = bench.idc(&["check", "scenario.toml"], &[]);
     assert_eq!(outcome.code, 0, "{}", outcome.err);
     let reported = "thing.stl: mended: 4 faces, all wound inwards turned, at (";
-    assert!(outcome.out.contains(reported), "{}", outcome.out);
+    assert!(outcome.words().contains(reported), "{}", outcome.out);
 }
 
 #[test]

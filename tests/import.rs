@@ -72,7 +72,7 @@ impl Folder {
         );
         (
             read_parquet(&self.path("out.parquet")).unwrap(),
-            outcome.out,
+            outcome.words(),
         )
     }
 
@@ -387,10 +387,10 @@ fn what_was_understood_is_reported_to_people_to_programs_or_to_nobody() {
     let stamped = format!("{time};0");
     let doubled = [&lines[..11], &[lines[10], &stamped], &lines[11..]].concat();
     folder.write("a.csv", doubled.join("\n") + "\n");
-    let said = folder.idc(&["map.toml", "a.csv", "b.csv"]).out;
+    let said = folder.idc(&["map.toml", "a.csv", "b.csv"]).words();
     for words in [
         "a.csv: 400 samples from 1.000 to 1.798 s",
-        "force  500 Hz",
+        "force N 500",
         "rows that repeat the one before them were left out: 1 (line 12)",
         "with the time of the one before them but other values were left out: 1 (line 13)",
         "a.csv and b.csv are the same data: 100 % of their rows",

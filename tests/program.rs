@@ -17,6 +17,11 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// Words of standard output, however its lines were broken.
+    pub fn words(&self) -> String {
+        self.out.split_whitespace().collect::<Vec<_>>().join(" ")
+    }
+
     /// The only line of standard error that begins with this word; no line may speak of a panic.
     pub fn only_line(&self, word: &str) -> &str {
         assert!(!self.err.contains("panicked"), "{}", self.err);

@@ -92,6 +92,7 @@ fn log(speed: f64, measured: bool) -> String {
 
 fn bench() -> Bench {
     let bench = Bench::new("plate_edge_ideal");
+    std::fs::create_dir(bench.path("crane")).unwrap();
     bench.write("crane/crane.urdf", URDF);
     bench.write("crane/arm.toml", ARM);
     bench.write("crane/path_1.csv", log(1.0, true));

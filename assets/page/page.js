@@ -33,7 +33,7 @@
 
   const strokes = {
     Plain: { width: 1.5 }, Dashed: { width: 1.5, dash: [6, 4] }, Raw: { width: 1, share: 0.7 }, Truth: { width: 2.2 },
-    Points: { points: true }, Area: { width: 0.5, share: 0.6 },
+    Points: { points: true }, Mark: { points: true, size: 12, fill: 1 }, Area: { width: 0.5, share: 0.6 },
   };
   const series = (content) => {
     const stroke = strokes[content.stroke];
@@ -41,7 +41,7 @@
     const built = { label: content.label, stroke: paint, width: stroke.width, dash: stroke.dash, spanGaps: content.joined, value: (_, v) => shown(v), scale: "y" };
     if (stroke.points) {
       built.paths = () => null;
-      built.points = { show: true, size: 4, width: 0, stroke: paint, fill: () => faded(content.role, 0.55), filter: null };
+      built.points = { show: true, size: stroke.size ?? 4, width: 0, stroke: paint, fill: () => faded(content.role, stroke.fill ?? 0.55), filter: null };
     } else {
       built.points = { show: false };
       if (content.stepwise) built.paths = uPlot.paths.stepped({ align: 1 });

@@ -12,10 +12,11 @@ use super::error::{AppError, ExitCode};
 use super::files::{OverwritePolicy, prepare_file};
 use super::output::say;
 use crate::demonstration::{self as scene, Stage};
+use crate::document::{Style, text};
 use crate::effects::{Effect, NUMBER_OFF, NUMBERS_OFF, kinds};
 use crate::keys::suggestion::nearest;
 use crate::recording::atomic::write_text;
-use page::{Explained, by_subsystem};
+use page::{Explained, by_subsystem, list};
 use picture::picture;
 
 /// For the help.
@@ -76,7 +77,8 @@ pub(super) fn run(arguments: &EffectsArguments) -> Result<ExitCode, AppError> {
         if arguments.json {
             say(&format!("{:#}\n", listed()))?;
         } else if !arguments.quiet {
-            say(&list())?;
+            say(&text(&list(), Style::Plain))?;
+            say(&format!("\n{AFTER_LIST}"))?;
         }
         return Ok(ExitCode::Done);
     };
@@ -100,7 +102,11 @@ pub(super) fn run(arguments: &EffectsArguments) -> Result<ExitCode, AppError> {
     } else if let (Some(file), false) = (&arguments.out, arguments.quiet) {
         say(&format!("written to {}\n", file.display()))?;
     } else if !arguments.quiet {
-        say(&explained.text())?;
+        let page = explained.document(page::PICTURES);
+        say(&text(&page, Style::Plain))?;
+        say(&format!(
+            "  idc effects {name} --out FILE.svg draws it anew\n"
+        ))?;
     }
     Ok(ExitCode::Done)
 }
@@ -117,6 +123,12 @@ fn named(name: &str) -> Result<&'static Effect, AppError> {
 /// Meaning of [`NUMBER_OFF`], which is no law and so has no picture.
 const OFF: &str = "A number of the rig file that is off by more than its tolerance allows.";
 
+/// Below the list.
+const AFTER_LIST: &str = "\
+* only in a rig with a part of the device alone, [rig] chain
+idc effects NAME explains one, idc run SCENARIO --with NAME puts it in
+";
+
 /// It, for programs.
 fn number_off() -> serde_json::Value {
     let keys: Vec<&str> = NUMBERS_OFF.iter().filter_map(Effect::number_key).collect();
@@ -132,24 +144,6 @@ fn number_off_text() -> String {
          Others are found as an effect that says the same (moving_mass_error ..).\n",
         keys.join("\n  ")
     )
-}
-
-/// For people.
-fn list() -> String {
-    let wide = kinds().map(|effect| effect.vocabulary().0.len()).max();
-    let wide = wide.unwrap_or(0);
-    let mut text = String::new();
-    for (heading, effects) in by_subsystem() {
-        text += &format!("{heading}\n");
-        for effect in effects {
-            let mark = if scene::is_of_part(effect) { '*' } else { ' ' };
-            let (name, meaning) = (effect.vocabulary().0, &effect.header().meaning);
-            text += &format!("{mark} {name:<wide$}  {meaning}\n");
-        }
-        text.push('\n');
-    }
-    text + "* only in a rig with a part of the device alone, [rig] chain\n\
-            idc effects NAME explains one, idc run SCENARIO --with NAME puts it in\n"
 }
 
 /// For programs.

@@ -304,9 +304,6 @@ pub enum AppError {
         /// The file.
         file: String,
     },
-    /// A picture that the drawing library refuses.
-    #[error("the picture could not be drawn: {0}")]
-    Picture(String),
     /// A number on the command line.
     #[error("--{option} is {value}, expected {expected}")]
     Option {

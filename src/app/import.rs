@@ -4,7 +4,6 @@ mod json;
 mod summary;
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -15,6 +14,7 @@ use super::files::{OverwritePolicy, is_same, prepare_file};
 use super::interrupt::Interruptible;
 use super::output::say;
 use super::progress;
+use crate::document::{self, Style};
 use crate::import::findings::same_data;
 use crate::import::{ImportMap, Imported, LogNote, import, load_map};
 use crate::recording::csv::write_recording;
@@ -214,23 +214,19 @@ fn provenance(imported: &Imported, map: &ImportMap) -> BTreeMap<String, String> 
 }
 
 fn text(map: &ImportMap, jobs: &[Job], copies: &[Copies]) -> String {
-    let mut text = String::new();
-    for job in jobs {
-        text += &summary::described(&job.imported, map);
-    }
-    for Copies { one, other, share } in copies {
-        let _ = writeln!(
-            text,
-            "{} and {} are the same data: {:.0} % of their rows",
-            one.display(),
-            other.display(),
-            100.0 * share
-        );
-    }
-    for (out, _) in jobs.iter().flat_map(|job| &job.outs) {
-        let _ = writeln!(text, "written to {}", out.display());
-    }
-    text
+    let jobs_text = jobs.iter().map(|job| {
+        let described = summary::described(&job.imported, map);
+        document::text(&described, Style::Plain) + "\n"
+    });
+    let copies = copies.iter().map(|Copies { one, other, share }| {
+        let [one, other] = [one.display(), other.display()];
+        let percent = 100.0 * share;
+        let words = format!("{one} and {other} are the same data: {percent:.0} % of their rows");
+        document::wrapped("", &words)
+    });
+    let outs = jobs.iter().flat_map(|job| &job.outs);
+    let outs = outs.map(|(out, _)| format!("written to {}\n", out.display()));
+    jobs_text.chain(copies).chain(outs).collect()
 }
 
 /// Logs that are copies of one another.

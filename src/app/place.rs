@@ -152,7 +152,7 @@ pub(super) fn run(arguments: &PlaceArguments) -> Result<ExitCode, AppError> {
         let robot = setup.scenario.arm.world_from_base.translation;
         let bodies = footprints(&setup, best_places(&tried).into_iter().next());
         let picture = svg(&setup.scenario.title, &grid, &tried, (robot, part), &bodies);
-        write_text(out, &picture.map_err(AppError::Picture)?)?;
+        write_text(out, &picture)?;
     }
     if let Some(csv) = &arguments.csv {
         write_text(csv, &table(&tried))?;
@@ -252,12 +252,7 @@ fn document(arguments: &PlaceArguments, tried: &[TriedPlace]) -> Document<'stati
     };
     let mut sections = Vec::new();
     if let Some((position, possible)) = best.first() {
-        let columns = vec![
-            Column::of_words("position_mm"),
-            Column::of_numbers("roll_deg"),
-            Column::of_numbers("comfort"),
-            Column::of_numbers("cycle time"),
-        ];
+        let columns = Column::list("position_mm | #roll_deg | #comfort | #cycle time");
         let rows = best.iter().take(PRINTED).map(row).collect();
         let table = Block::Table(Table::new("", columns, rows));
         sections.push(Section::new("Best positions", vec![table]));

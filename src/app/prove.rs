@@ -11,6 +11,7 @@ use super::files::{OutputFolder, OverwritePolicy, prepare_file};
 use super::interrupt::Interruptible;
 use super::output::say;
 use super::progress;
+use crate::document::{Style, text};
 use crate::laboratory::{Recipe, shipped};
 use crate::proof::{
     CaseConditions, Claims, Course, Diagnose, DrawPlan, ProofError, SweepPlan, folders, laws,
@@ -196,7 +197,7 @@ fn run_prove(arguments: &ProveArguments) -> Result<ExitCode, AppError> {
     if arguments.json {
         say(&(serde_json::to_string_pretty(&summary)? + "\n"))?;
     } else {
-        say(&summary.text())?;
+        say(&text(&summary.document(), Style::Plain))?;
         for sentence in &short {
             say(&format!("falls short: {sentence}\n"))?;
         }

@@ -20,7 +20,7 @@ use crate::recording::atomic::write_text;
 use crate::recording::csv::EdgeProfile;
 use crate::recording::parquet::read_parquet;
 use crate::recording::{Recording, RecordingError};
-use crate::report::{self, RunReport, SUMMARY, Sketches, StudyPictures};
+use crate::report::{self, RunReport, SUMMARY, Sketches};
 
 /// For the help.
 pub(super) const EXAMPLES: &str = "\
@@ -97,16 +97,10 @@ pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
         )
     } else if folder.join(FLEET).is_file() {
         let found = read_json(&folder.join(FLEET))?;
-        ("fleet", html(&fleet::document(&found)?))
+        ("fleet", html(&fleet::document(&found)))
     } else if folder.join(DESIGN).is_file() {
         let study: StudyDocument = read_json(&folder.join(DESIGN))?;
-        let [front, robustness] =
-            [FRONT, ROBUSTNESS].map(|name| std::fs::read_to_string(folder.join(name)).ok());
-        let pictures = StudyPictures {
-            front: front.as_deref(),
-            robustness: robustness.as_deref(),
-        };
-        ("study", html(&report::study(&study, pictures)))
+        ("study", html(&report::study(&study)))
     } else {
         return Err(AppError::NoResults {
             folder: folder.display().to_string(),

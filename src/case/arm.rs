@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::arm_recording::{ArmLog, column_of, noise_of, read};
+use super::diagnosed::{Diagnosed, IMPROVED};
 use super::error::CaseError;
-use super::{Diagnosed, IMPROVED, rig};
+use super::rig::names_to_fit;
 use crate::diagnosis::answer::details::{ChannelMisfit, ChannelNoise};
 use crate::diagnosis::arm::input::{ArmInput, ArmRecording};
 use crate::diagnosis::arm::{ArmDiagnosis, diagnose};
@@ -48,7 +49,7 @@ pub fn arm_of(folder: &Path) -> Result<(ArmFile, Vec<String>), CaseError> {
             file: file.path.display().to_string(),
         });
     }
-    let names = rig::names_to_fit(&file.path, &file.fit, file.predict.as_ref(), folder)?;
+    let names = names_to_fit(&file.path, &file.fit, file.predict.as_ref(), folder)?;
     Ok((file, names))
 }
 
@@ -100,7 +101,7 @@ impl ArmCase {
 
     /// Diagnoses it; what the improved file says is what predicts.
     pub fn diagnosed(&self, start: Instant) -> Result<Diagnosed, CaseError> {
-        let ArmDiagnosis { mut answer, fitted } = diagnose(&self.input);
+        let ArmDiagnosis { mut answer, fitted } = diagnose(&self.input, &mut |_| {});
         for note in &self.notes {
             answer.note(note.clone());
         }

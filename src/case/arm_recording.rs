@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::error::CaseError;
 use crate::arm::JointKind;
 use crate::diagnosis::arm::input::ArmRecording;
-use crate::recorded_arm::motion::Motion;
+use crate::recorded_arm::motion::{Motion, cut_off_for};
 use crate::recorded_arm::simulate::Channel;
 use crate::recorded_arm::wrench::CHANNELS as WRENCH;
 use crate::recording::RecordingError;
@@ -13,8 +13,6 @@ use crate::recording::csv::Log;
 use crate::recording::log::read_log;
 use crate::scenario::arm_file::ArmFile;
 
-/// Cut-off of the low-pass on positions [Hz].
-const CUT_OFF: f64 = 25.0;
 /// Samples below which a log carries no information on drives.
 const LEAST_SAMPLES: usize = 100;
 /// Samples below which postures carry no information on a wrench sensor.
@@ -170,7 +168,11 @@ pub(super) fn read(arm: &ArmFile, folder: &Path, name: &str) -> Result<ArmLog, C
     check_torques(arm, &path, &log, &channels)?;
     let mut found = Vec::with_capacity(count);
     for (joint, values) in positions.into_iter().enumerate() {
-        let column = format!("joint_{}_rad", arm.numbers[joint]);
+        let unit = match arm.nominal.chain.joints[joint].kind {
+            JointKind::Revolute => "rad",
+            JointKind::Prismatic => "m",
+        };
+        let column = format!("joint_{}_{unit}", arm.numbers[joint]);
         let Some(values) = values else {
             let expected = format!("it: positions of all {count} joints are inputs");
             return Err(column_error(&path, &column, "missing".to_owned(), expected));
@@ -352,7 +354,12 @@ impl ArmLog {
         });
         ArmRecording {
             name: self.name.clone(),
-            motion: Motion::of_positions(index, &self.log.time, &self.positions, CUT_OFF),
+            motion: Motion::of_positions(
+                index,
+                &self.log.time,
+                &self.positions,
+                cut_off_for(&self.log.time, &self.positions),
+            ),
             readings: readings.collect(),
         }
     }

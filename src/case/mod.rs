@@ -6,6 +6,7 @@ mod arm_recording;
 mod band;
 mod cell;
 mod cell_account;
+mod diagnosed;
 mod error;
 mod flange_prediction;
 mod ground;
@@ -21,6 +22,7 @@ use std::time::Instant;
 pub use arm::{ARM, ArmPrediction, LogSummary, PredictedColumn, arm_of, logs_of, predict_arm};
 pub use band::{Predicted, predicted_by};
 pub use cell::is_cell_case;
+pub use diagnosed::{Diagnosed, IMPROVED};
 pub use error::CaseError;
 pub use flange_prediction::{FlangePrediction, predict_flange_run};
 pub use recordings::{check_finite, read_in_any_unit, read_rig, shown_columns};
@@ -57,9 +59,6 @@ use arm::ArmCase;
 use cell::CellCase;
 use rig::MeasuredRun;
 
-/// Name of the improved model's file.
-pub const IMPROVED: &str = "improved.toml";
-
 /// Model and recordings, read and checked.
 pub struct Case {
     /// Name of the folder.
@@ -86,22 +85,6 @@ enum Kind {
     },
     /// A recorded arm.
     Arm(Box<ArmCase>),
-}
-
-/// Result of a diagnosis, with the files that it comes to.
-pub struct Diagnosed {
-    /// The finding.
-    pub answer: Answer,
-    /// The improved model as a file.
-    pub improved: String,
-    /// The improved model's prediction of the recording that was kept back, as comma-separated values.
-    pub prediction: Option<String>,
-    /// Recordings beside models.
-    pub comparison: Comparison,
-    /// The search with all its explanations; none of a contact flange or an arm.
-    pub diagnosis: Option<Diagnosis>,
-    /// The improved model; none of a contact flange or an arm.
-    pub plant: Option<PlantParameters>,
 }
 
 /// Whether a folder holds a recorded arm.
@@ -228,6 +211,12 @@ impl Case {
             Kind::Cell { cell, .. } => Some(cell),
             _ => None,
         }
+    }
+
+    /// Whether it is of a recorded arm.
+    #[must_use]
+    pub fn is_of_arm(&self) -> bool {
+        matches!(self.kind, Kind::Arm(_))
     }
 
     /// Commands and encoders of the first recording of a cell.

@@ -87,9 +87,6 @@ pub enum DesignError {
     /// The optimiser refused.
     #[error("the optimiser stopped: {0}")]
     Optimiser(String),
-    /// The drawing library refused.
-    #[error("the trade-off front cannot be drawn: {0}")]
-    Picture(String),
 }
 
 impl DesignError {

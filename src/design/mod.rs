@@ -24,7 +24,6 @@ mod file;
 mod front;
 mod goal;
 mod limits;
-mod picture;
 mod polish;
 mod refine;
 mod result;
@@ -40,7 +39,6 @@ pub use candidate::{Design, Evaluate, EvaluateError, Outcome, ScenarioOutcome};
 pub use error::DesignError;
 pub use file::schema;
 pub use limits::{Limit, LimitQuantity, Side};
-pub use picture::{front_svg, robustness_svg};
 pub use result::{
     ActiveBound, ActiveLimit, Candidate, FrontPoint, LimitState, ObjectiveNames, Sensitivity,
     StudyDocument, StudyResult, VariedKey,

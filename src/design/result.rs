@@ -76,8 +76,8 @@ pub struct StudyResult {
     /// What draws at the chosen design do, if the study asks for them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub robustness: Option<Robustness>,
-    /// Both objectives of every other design that keeps the limits, second one first; for the picture.
-    #[serde(skip)]
+    /// Both objectives of every other design that keeps the limits, second one first.
+    #[serde(default)]
     pub others: Vec<[f64; 2]>,
 }
 

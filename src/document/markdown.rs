@@ -5,10 +5,20 @@ use super::{Block, Cell, Document, Table, Tone, on_the_page};
 /// The document as Markdown.
 #[must_use]
 pub fn markdown(document: &Document<'_>) -> String {
-    let mut out = format!("# {}\n", escape(&document.title));
+    markdown_below(document, 1)
+}
+
+/// The same as a part of a page, its title a heading of a level; without a title none.
+#[must_use]
+pub fn markdown_below(document: &Document<'_>, level: usize) -> String {
+    let mut out = match document.title.as_str() {
+        "" => String::new(),
+        title => heading(title, level),
+    };
     if !document.verdict.is_empty() {
         let mark = if document.tone == Tone::Bad { "**" } else { "" };
-        out += &format!("\n## {mark}{}{mark}\n", escape(&document.verdict));
+        let marks = "#".repeat(level + 1);
+        out += &format!("\n{marks} {mark}{}{mark}\n", escape(&document.verdict));
     }
     for lead in &document.lead {
         out += &format!("\n{}\n", escape(lead));
@@ -28,9 +38,11 @@ pub fn markdown(document: &Document<'_>) -> String {
         .iter()
         .filter(|section| !section.is_appendix)
     {
-        let blocks: String = section.blocks.iter().map(block).collect();
+        let blocks: String = (section.blocks.iter())
+            .map(|one| block(one, level + 2))
+            .collect();
         if !blocks.is_empty() {
-            out += &format!("\n## {}\n{blocks}", escape(&section.title));
+            out += &format!("\n{}{blocks}", heading(&section.title, level + 1));
         }
     }
     if let Some(line) = on_the_page(document) {
@@ -40,20 +52,30 @@ pub fn markdown(document: &Document<'_>) -> String {
 }
 
 /// A block; nothing of what is drawn, which the last line names.
-fn block(block: &Block<'_>) -> String {
+fn block(block: &Block<'_>, level: usize) -> String {
     match block {
-        Block::Heading(text) => format!("\n### {}\n", escape(text)),
+        Block::Heading(text) => format!("\n{}", heading(text, level)),
         Block::Paragraph(text) => format!("\n{}\n", escape(text)),
         Block::Table(of) => table(of),
         Block::Lines(lines) => format!("\n```\n{}\n```\n", lines.trim_end()),
+        Block::File(name, words) if name.ends_with(".svg") => {
+            format!("\n![{}]({name})\n", escape(words))
+        }
         Block::File(name, words) => format!("\n[{}]({name}): {}\n", escape(name), escape(words)),
         Block::Hint(_)
         | Block::Strip(_)
         | Block::Panel(_)
-        | Block::Picture(..)
         | Block::Sketches(_)
         | Block::InSpace(..)
         | Block::Folded(..) => String::new(),
+    }
+}
+
+/// A heading; one that would be too deep for a list of contents is bold.
+fn heading(text: &str, level: usize) -> String {
+    match level {
+        1..=3 => format!("{} {}\n", "#".repeat(level), escape(text)),
+        _ => format!("**{}**\n", escape(text)),
     }
 }
 
@@ -76,6 +98,7 @@ fn table(table: &Table) -> String {
     for cells in &table.rows {
         let cell = |cell: &Cell| match cell {
             Cell::Verdict(words, false) => format!("**{}**", escape(words)),
+            Cell::Link(words, target) => format!("[{}]({target})", escape(words)),
             other => escape(&other.words()),
         };
         out += &row(&cells.iter().map(cell).collect::<Vec<_>>());

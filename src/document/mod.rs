@@ -16,7 +16,7 @@ mod thin;
 
 pub use drawing::{Drawing, DrawnArrow, DrawnBody, DrawnLegend, DrawnLine, DrawnView, Shade};
 pub use html::html;
-pub use markdown::markdown;
+pub use markdown::{markdown, markdown_below};
 pub use number::Number;
 pub use panel::{Band, Figure, Horizontal, Marker, Panel, Role, Series, Stroke};
 pub use text::{Style, WIDTH, text, wrapped};
@@ -98,8 +98,6 @@ pub enum Block<'a> {
     Strip(Strip),
     /// Lines as they are.
     Lines(String),
-    /// A picture: what it shows, and an SVG document of our own.
-    Picture(String, String),
     /// Pictures of our own side by side as far as there is room: what each shows, and an SVG document in the page's colours.
     Sketches(Vec<(String, String)>),
     /// Bodies and lines in space, which a reader can turn; on paper, and where a browser does not draw in space, pictures as above.
@@ -143,6 +141,8 @@ pub enum Cell {
     Verdict(String, bool),
     /// Hexadecimal digits.
     Hash(String),
+    /// Words, and where they lead.
+    Link(String, String),
     /// An interval with the value in it, drawn between what all of them span: `[least, low, value, high, most]`.
     Interval([f64; 5]),
 }
@@ -197,6 +197,16 @@ impl Table {
 }
 
 impl Column {
+    /// Several by their names: `case | #seconds | effects`, those of numbers with a `#`.
+    #[must_use]
+    pub fn list(names: &str) -> Vec<Self> {
+        let column = |name: &str| match name.trim().strip_prefix('#') {
+            Some(name) => Self::of_numbers(name),
+            None => Self::of_words(name.trim()),
+        };
+        names.split('|').map(column).collect()
+    }
+
     /// One of words.
     pub fn of_words(name: impl Into<String>) -> Self {
         Self {
@@ -230,7 +240,10 @@ impl Cell {
     #[must_use]
     pub fn words(&self) -> String {
         match self {
-            Self::Text(words) | Self::Verdict(words, _) | Self::Hash(words) => words.clone(),
+            Self::Text(words)
+            | Self::Verdict(words, _)
+            | Self::Hash(words)
+            | Self::Link(words, _) => words.clone(),
             Self::Number(number) => number.with_unit(),
             Self::Interval(_) => String::new(),
         }
@@ -274,7 +287,6 @@ fn drawn(block: &Block<'_>) -> Vec<String> {
     match block {
         Block::Panel(panel) => vec![panel.title.clone()],
         Block::Strip(strip) => vec![format!("times in {}", strip.title)],
-        Block::Picture(words, _) => vec![words.clone()],
         Block::Sketches(all) => named(all),
         Block::InSpace(drawing, _) => vec![first_sentence(&drawing.name)],
         Block::Folded(summary, _) => vec![summary.clone()],

@@ -26,7 +26,7 @@ pub struct Panel<'a> {
     pub bands: Vec<Band>,
     /// Vertical event lines.
     pub markers: Vec<Marker>,
-    /// Times that are shaded [s].
+    /// Parts of the horizontal axis that are shaded; they may reach beyond it.
     pub spans: Vec<[f64; 2]>,
     /// Panels of one name are zoomed together; may be empty.
     pub group: String,
@@ -99,6 +99,8 @@ pub enum Stroke {
     Truth,
     /// Dots without a line.
     Points,
+    /// Large dots, for the few that others are compared with.
+    Mark,
     /// The area that the line encloses, filled: of a band whose edges are curves, one edge there and the other back.
     Area,
 }

@@ -59,11 +59,7 @@ pub fn text(document: &Document<'_>, style: Style) -> String {
             let remark = Cell::from(printable(&fact.remark));
             vec![Cell::from(fact.name.as_str()), fact.value.clone(), remark]
         });
-        let columns = vec![
-            Column::of_words(""),
-            Column::of_numbers(""),
-            Column::of_words(""),
-        ];
+        let columns = Column::list(" | # | ");
         out.push('\n');
         out += &table(&Table::new("", columns, rows.collect()), style);
     }
@@ -74,7 +70,7 @@ pub fn text(document: &Document<'_>, style: Style) -> String {
         out.push('\n');
         out += &style.paint("2", &wrapped("", &line));
     }
-    out
+    out.trim_start_matches('\n').to_owned()
 }
 
 /// A paragraph in lines of at most [`WIDTH`] columns, the first with something before it and the others indented as far.
@@ -85,6 +81,9 @@ pub fn wrapped(before: &str, paragraph: &str) -> String {
 
 /// A paragraph with something before its first line and before the others.
 fn hanging([first, others]: [&str; 2], paragraph: &str) -> String {
+    if paragraph.is_empty() {
+        return String::new();
+    }
     let options = textwrap::Options::new(WIDTH)
         .initial_indent(first)
         .subsequent_indent(others)
@@ -122,7 +121,6 @@ fn block(block: &Block<'_>, style: Style) -> String {
         Block::Hint(_)
         | Block::Strip(_)
         | Block::Panel(_)
-        | Block::Picture(..)
         | Block::Sketches(_)
         | Block::InSpace(..)
         | Block::Folded(..) => String::new(),
@@ -142,13 +140,13 @@ fn table(table: &Table, style: Style) -> String {
         true => String::new(),
         false => style.paint("2", &wrapped(INDENT, &table.caption)),
     };
-    let longest = |index: &usize| {
+    let widest = |index: &usize, of: fn(&str) -> usize| {
         let cells = table.rows.iter().map(|row| row[*index].words());
         let texts = cells.chain([table.columns[*index].name.clone()]);
-        let words = texts.filter_map(|text| text.split(' ').map(display_width).max());
-        words.max().unwrap_or(0)
+        texts.map(|text| of(&text)).max().unwrap_or(0)
     };
-    let least: Vec<usize> = shown.iter().map(longest).collect();
+    let longest_word = |text: &str| text.split(' ').map(display_width).max().unwrap_or(0);
+    let least: Vec<usize> = shown.iter().map(|i| widest(i, longest_word)).collect();
     let room = WIDTH - INDENT.len();
     if least.iter().map(|width| width + GAP).sum::<usize>() > room {
         let rows = table.rows.iter().map(|row| record(table, &shown, row));
@@ -184,15 +182,30 @@ fn table(table: &Table, style: Style) -> String {
         });
         of.add_row(cells.collect::<Vec<_>>());
     }
-    let constraints = least.iter().map(|width| {
+    let most: Vec<usize> = shown.iter().map(|i| widest(i, display_width)).collect();
+    let constraints = widths(&least, &most, room).into_iter().map(|width| {
         let width = u16::try_from(width + GAP).unwrap_or(u16::MAX);
-        ColumnConstraint::LowerBoundary(comfy_table::Width::Fixed(width))
+        ColumnConstraint::Absolute(comfy_table::Width::Fixed(width))
     });
     of.set_constraints(constraints);
     let lines = of
         .lines()
         .map(|line| format!("{INDENT}{}", line.trim_end()).trim_end().to_owned() + "\n");
     caption + &lines.collect::<String>()
+}
+
+/// Widths of columns between their longest words and their longest texts: what is left of the room goes to those first that need the least of it.
+fn widths(least: &[usize], most: &[usize], room: usize) -> Vec<usize> {
+    let mut left = room.saturating_sub(least.iter().map(|width| width + GAP).sum());
+    let mut widths = least.to_vec();
+    let mut order: Vec<usize> = (0..least.len()).collect();
+    order.sort_by_key(|index| most[*index] - least[*index]);
+    for (place, &index) in order.iter().enumerate() {
+        let more = (most[index] - least[index]).min(left / (order.len() - place));
+        widths[index] += more;
+        left -= more;
+    }
+    widths
 }
 
 /// A row as a paragraph: its words, then its numbers by the names of their columns.
@@ -255,7 +268,7 @@ mod tests {
     fn colours_change_nothing_but_the_colours() {
         let verdict = Cell::Verdict("OUTSIDE".to_owned(), false);
         let number = Cell::from(Number::new("x", Some(12.5), "N"));
-        let columns = vec![Column::of_words("verdict"), Column::of_numbers("value")];
+        let columns = Column::list("verdict | #value");
         let table = Table::new("All.", columns, vec![vec![verdict, number]]);
         let document = Document {
             title: "all".to_owned(),

@@ -18,6 +18,7 @@ const LARGE: i32 = 18 * PX;
 const FRAME: RGBColor = RGBColor(0x55, 0x55, 0x55);
 const EVENT: RGBColor = RGBColor(0x99, 0x99, 0x99);
 const GRID: RGBColor = RGBColor(0xE4, 0xE4, 0xE4);
+const SHADE: RGBColor = RGBColor(0xCC, 0x79, 0xA7);
 
 /// The figure as an SVG document.
 pub(super) fn document(figure: &Figure) -> Result<String, FigureError> {
@@ -37,6 +38,10 @@ pub(super) fn document(figure: &Figure) -> Result<String, FigureError> {
 
 impl Layout<'_> {
     fn paint(&self, canvas: &Canvas) -> Drawn {
+        for span in &self.panel.spans {
+            let [from, to] = span.map(|end| across(&self.horizontal, end).clamp(LEFT, RIGHT));
+            canvas.area([(from, self.top), (to, self.bottom)], SHADE.mix(0.15))?;
+        }
         for band in &self.panel.bands {
             let corners = [(LEFT, self.up(band.to)), (RIGHT, self.up(band.from))];
             canvas.area(corners, Role::Band.colour().mix(0.25))?;
@@ -130,7 +135,7 @@ impl Layout<'_> {
             let (left, right) = (spot.left, spot.left + KEY);
             if let Some(series) = series {
                 let line = match series.stroke {
-                    Stroke::Points => vec![(i32::midpoint(left, right), y)],
+                    Stroke::Points | Stroke::Mark => vec![(i32::midpoint(left, right), y)],
                     Stroke::Area => vec![
                         (left, y - SPACE),
                         (right, y - SPACE),
@@ -160,18 +165,20 @@ impl Series<'_> {
             Stroke::Raw => (10, 0.65),
             Stroke::Truth => (32, 1.0),
             Stroke::Points => (0, 0.8),
+            Stroke::Mark => (0, 1.0),
             Stroke::Area => (0, 0.25),
         };
         self.role.colour().mix(opacity).stroke_width(width)
     }
 
     fn paint(&self, canvas: &Canvas, lines: &[Vec<Place>], style: ShapeStyle) -> Drawn {
-        if self.stroke == Stroke::Points {
+        if let Stroke::Points | Stroke::Mark = self.stroke {
+            let radius = if self.stroke == Stroke::Mark { 65 } else { 35 };
             // Of points that hide one another one is enough.
             let mut seen = BTreeSet::new();
             let mut visible = |&&(x, y): &&Place| seen.insert((x / (2 * PX), y / (2 * PX)));
             let mut points = lines.iter().flatten().filter(&mut visible);
-            return points.try_for_each(|&point| canvas.dot(point, 35, style));
+            return points.try_for_each(|&point| canvas.dot(point, radius, style));
         }
         lines.iter().try_for_each(|line| match line[..] {
             // As a line it would be invisible.

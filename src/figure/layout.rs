@@ -77,7 +77,10 @@ pub(super) fn layouts<'a>(figure: &'a Figure) -> Result<Vec<Layout<'a>>, FigureE
         let top = above + ROW * (headings + last_label.unwrap_or(0)) + TICK;
         let next = figure.panels.get(index + 1);
         layouts.push(Layout {
-            vertical: Scale::new(panel.heights(), 0.06, 7.0),
+            vertical: match panel.within {
+                Some(ends) => Scale::new(ends.into_iter(), 0.0, 7.0),
+                None => Scale::new(panel.heights(), 0.06, 7.0),
+            },
             labelled: !(over_time(&panel) && next.is_some_and(|next| over_time(&next))),
             bottom: top + height,
             panel,
@@ -185,10 +188,10 @@ impl Layout<'_> {
         self.bottom + if self.labelled { 56 * PX } else { 16 * PX }
     }
 
-    /// Where a value lies from top to bottom.
+    /// Where a value lies from top to bottom; on the edge if it lies beyond.
     pub fn up(&self, value: f64) -> i32 {
         let height = f64::from(self.bottom - self.top);
-        self.bottom - (self.vertical.share(value) * height).round() as i32
+        self.bottom - (self.vertical.share(value).clamp(0.0, 1.0) * height).round() as i32
     }
 }
 

@@ -13,6 +13,7 @@ mod trace;
 
 use crate::document::Figure;
 pub use error::FigureError;
+pub use trace::ticks;
 
 /// Draws a figure as an SVG document, 960 px wide; the same figure gives the same bytes.
 ///

@@ -72,6 +72,11 @@ impl Scale {
     }
 }
 
+/// Round values of an axis with their texts.
+pub fn ticks(ends: [f64; 2]) -> Vec<(f64, String)> {
+    Scale::new(ends.into_iter(), 0.0, 10.0).ticks()
+}
+
 /// The least of 1, 2, 5 times a power of ten that is not below `least`.
 fn round_step(least: f64) -> f64 {
     let power = 10_f64.powf(least.log10().floor());

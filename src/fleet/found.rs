@@ -6,8 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use super::diagnosed::{Diagnosed, NumberFound, Started};
 use super::{Change, ChangeKind, Layout, change, date_of_day, trend};
-use crate::quantity::counted;
-use crate::quantity::display_name::{display_name, number};
+use crate::diagnosis::answer::words::display_name;
+use crate::quantity::display_name::number;
+use crate::quantity::{counted, listed};
 use crate::recording::provenance::SourceFile;
 use crate::stats::{NORMAL_MAD, median};
 
@@ -279,11 +280,16 @@ impl Found {
     /// Whether anything was found.
     pub fn verdict(&self) -> String {
         let with = |d: &&DeviceFound| !d.effects.is_empty() || !d.changed.is_empty();
-        let count = self.devices.iter().filter(with).count();
-        let of = counted(self.devices.len(), "device");
+        let found: Vec<String> = (self.devices.iter().filter(with))
+            .map(|device| device.name.clone())
+            .collect();
+        let (count, of) = (found.len(), counted(self.devices.len(), "device"));
         match count {
             0 => format!("Nothing was found in {of}."),
-            count => format!("Something was found in {count} of {of}."),
+            _ => format!(
+                "Something was found in {count} of {of}: {}.",
+                listed(&found)
+            ),
         }
     }
 }
@@ -307,15 +313,15 @@ impl DeviceFound {
             )
         });
         let changed = self.changed.iter().map(|changed| {
-            let (name, unit) = display_name(&changed.number);
+            let (name, unit, factor) = display_name(&changed.number);
             let of = match changed.effect.as_str() {
                 "" => String::new(),
                 effect => format!(" of {}", words(effect)),
             };
             format!(
                 "{name}{of}: {} to {} {unit}, {}",
-                number(changed.before),
-                number(changed.after),
+                number(factor * changed.before),
+                number(factor * changed.after),
                 changed.since.words()
             )
         });
@@ -468,12 +474,9 @@ fn unlike(devices: &[DeviceFound]) -> Vec<(String, String)> {
             let spread = NORMAL_MAD * median(off).unwrap_or(0.0);
             let spread = spread.max(median(scatter).unwrap_or(0.0));
             if spread > 0.0 && (own - middle).abs() > UNLIKE * spread {
-                let (name, unit) = display_name(&series.number);
-                let what = format!(
-                    "{name} {} {unit}, the others {}",
-                    number(own),
-                    number(middle)
-                );
+                let (name, unit, factor) = display_name(&series.number);
+                let [own, middle] = [own, middle].map(|value| number(factor * value));
+                let what = format!("{name} {own} {unit}, the others {middle}");
                 found.push((device.name.clone(), what));
             }
         }

@@ -4,12 +4,12 @@
 //! noise = 1.4826 median |x_{i+1} - 2 x_i + x_{i-1}| / sqrt 6          white noise on a smooth trajectory (Gasser, Sroka and Jennen-Steinmetz 1986)
 //! ```
 
+use serde::Serialize;
+
 use super::assemble::{Imported, LogNote};
 use super::doubts;
 use super::log::Series;
 use super::map::{ChannelMap, ImportMap};
-use super::units::LogUnit;
-use crate::recording::Unit;
 use crate::stats::{NORMAL_MAD, median, median_step};
 
 /// Median steps from which a step is a gap.
@@ -22,28 +22,33 @@ const CUT: f64 = 0.005;
 /// Share of rows that two logs must have in common to be the same data.
 const SAME: f64 = 0.9;
 
-/// Findings about a channel.
-#[derive(Debug, Clone, PartialEq)]
+/// Findings about a channel, as `idc import --json` has them.
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Finding {
     /// The quantity.
     pub quantity: String,
     /// SI unit of the numbers here.
-    pub unit: Unit,
+    pub unit: &'static str,
     /// Unit of the log.
-    pub log_unit: &'static LogUnit,
+    pub logged_in: &'static str,
     /// Samples, and those of them without a value.
     pub samples: usize,
     /// Samples without a value.
     pub missing: usize,
     /// Samples a second, in the median [Hz].
+    #[serde(rename = "rate_hz")]
     pub rate: f64,
     /// Gaps, from when to when, the longest first [s].
+    #[serde(rename = "gaps_s")]
     pub gaps: Vec<[f64; 2]>,
-    /// Least and largest value.
-    pub range: [f64; 2],
+    /// Least value; infinite where there is none.
+    pub least: f64,
+    /// Largest value; infinite where there is none.
+    pub most: f64,
     /// Standard deviation of its noise, if there are samples enough.
     pub noise: Option<f64>,
     /// Step of its converter, if it has one.
+    #[serde(rename = "step")]
     pub quantum: Option<f64>,
     /// Values at which it is cut off.
     pub cut_off_at: Vec<f64>,
@@ -97,13 +102,14 @@ pub(super) fn finding(series: &Series, channel: &ChannelMap) -> Finding {
     };
     Finding {
         quantity: channel.quantity.clone(),
-        unit: channel.unit.si,
-        log_unit: channel.unit,
+        unit: channel.unit.si.symbol(),
+        logged_in: channel.unit.name,
         samples: series.time.len(),
         missing: series.values.len() - there.len(),
         rate: if step > 0.0 { 1.0 / step } else { 0.0 },
         gaps,
-        range,
+        least: range[0],
+        most: range[1],
         noise,
         quantum,
         doubts: doubts::of_channel(channel, &there, range, quantum, &cut_off_at),

@@ -1,11 +1,10 @@
 //! Results of all cases of a proof, and the claims about them.
 
-use std::fmt::Write as _;
-
 use serde::Serialize;
 
 use super::reliability::Reliability;
 use super::score::CaseScore;
+use crate::document::{Block, Cell, Column, Document, Section, Table};
 use crate::stats::{median, quantile};
 
 /// Claims that a proof must reach.
@@ -161,11 +160,7 @@ impl ProofSummary {
     }
 
     /// For people.
-    pub fn text(&self) -> String {
-        let mut text = String::new();
-        for case in &self.cases {
-            let _ = writeln!(text, "{}", line(case));
-        }
+    pub fn document(&self) -> Document<'static> {
         let of = |[hits, of]: [usize; 2]| format!("{hits} of {of}");
         let number = |value: Option<f64>, digits: usize| {
             value.map_or_else(|| "-".to_owned(), |value| format!("{value:.digits$}"))
@@ -204,37 +199,41 @@ impl ProofSummary {
             ),
             ("median time [s]", number(self.seconds, 1)),
         ];
-        let _ = writeln!(text);
-        for (what, value) in rows {
-            let _ = writeln!(text, "{what:<46} {value}");
+        let rows = rows.map(|(what, value)| vec![Cell::from(what), Cell::from(value)]);
+        let columns = Column::list("of all cases | #");
+        let all = Table::new("", columns, rows.to_vec());
+        let columns = Column::list("case | | at work | answered | #overlap | #prediction");
+        let cases = Table::new("", columns, self.cases.iter().map(row).collect());
+        Document {
+            sections: [cases, all]
+                .map(|table| Section::new("", vec![Block::Table(table)]))
+                .into(),
+            ..Document::default()
         }
-        text
     }
 }
 
-fn line(case: &CaseScore) -> String {
-    let list = |names: &[String]| {
-        if names.is_empty() {
-            "nothing".to_owned()
-        } else {
-            names.join(" + ")
-        }
+fn row(case: &CaseScore) -> Vec<Cell> {
+    let list = |names: &[String]| match names.is_empty() {
+        true => "nothing".to_owned(),
+        false => names.join(" + "),
     };
-    let mark = if case.named_exactly { "named" } else { "MISS " };
+    let mark = if case.named_exactly { "named" } else { "MISS" };
     let answered = match (&case.answered, &case.failure) {
         (Some(names), _) => list(names),
         (None, failure) => format!("no answer ({})", failure.clone().unwrap_or_default()),
     };
     let prediction = case
         .prediction
-        .map_or_else(|| "-".to_owned(), |p| format!("{p:.2}"));
-    format!(
-        "{:<10} {mark}  {:<44} answered {:<44} overlap {:.2}  prediction {prediction}",
-        case.case,
-        list(&case.truth),
-        answered,
-        case.overlap,
-    )
+        .map_or("-".to_owned(), |p| format!("{p:.2}"));
+    vec![
+        case.case.as_str().into(),
+        Cell::Verdict(mark.to_owned(), case.named_exactly),
+        list(&case.truth).into(),
+        answered.into(),
+        format!("{:.2}", case.overlap).into(),
+        prediction.into(),
+    ]
 }
 
 #[cfg(test)]

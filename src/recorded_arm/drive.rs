@@ -9,26 +9,8 @@
 //! m friction per load [1], t_g torque that the gear carries [N m], z bristles [1], F_v viscous friction [N m s/rad], u share by which friction falls as the
 //! joint warms [1], T time constant [s], o offset [N m], a, n, p gear ripple, k (q - r) pull of hoses (a dress pack) to a rest angle.
 
+pub use super::moment::JointMoment;
 use super::parameters::Drive;
-
-/// One moment of a joint.
-#[derive(Debug, Clone, Copy)]
-pub struct JointMoment {
-    /// Time since the recording's start [s].
-    pub time: f64,
-    /// Position [rad].
-    pub position: f64,
-    /// Speed [rad/s].
-    pub speed: f64,
-    /// Acceleration [rad/s2].
-    pub acceleration: f64,
-    /// Share of the sliding friction that is reached [1].
-    pub bristles: f64,
-    /// Dry friction, cold [N m].
-    pub dry: f64,
-    /// Torque that the gear carries [N m].
-    pub carried: f64,
-}
 
 /// Dry friction of a joint that slides, cold [N m].
 #[must_use]

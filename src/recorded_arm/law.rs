@@ -4,7 +4,7 @@
 //! t = sum of a_k s_k(x)           in addition at the joint, times bristles z where it is friction
 //! ```
 
-use super::drive::JointMoment;
+use super::moment::JointMoment;
 
 /// What a law depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -12,6 +12,7 @@ pub mod delay;
 pub mod drive;
 pub mod filter;
 pub mod law;
+pub mod moment;
 pub mod motion;
 pub mod parameters;
 pub mod push;

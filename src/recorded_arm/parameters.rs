@@ -1,4 +1,4 @@
-//! Description of a recorded arm in numbers, what it is believed to be or what a diagnosis found; the same type for both.
+//! Description of a recorded arm in numbers, what it nominally is or what a diagnosis found; the same type for both.
 
 use glam::{DMat3, DQuat, DVec3};
 use glamx::DPose3;

@@ -243,7 +243,7 @@ impl Comparison {
     }
 
     fn table(&self, names: &[String]) -> Table {
-        let mut columns = vec![Column::of_words("number"), Column::of_words("unit")];
+        let mut columns = Column::list("number | unit");
         for (place, name) in names.iter().enumerate() {
             columns.push(Column::of_numbers(name));
             if place > 0 {

@@ -205,17 +205,9 @@ fn parameters<'a>(answer: &Answer) -> Option<Block<'a>> {
     let rows: Vec<Vec<Cell>> = rows.collect();
     if !rows.is_empty() {
         let scale = format!("{} %", significant(100.0 * widest, 2));
-        let columns = vec![
-            Column::of_words("effect"),
-            Column::of_words("where"),
-            Column::of_numbers("probability"),
-            Column::of_words("parameter"),
-            Column::of_numbers("value"),
-            Column::of_numbers("low"),
-            Column::of_numbers("high"),
-            Column::of_words("unit"),
-            Column::of_words("interval"),
-        ];
+        let columns = Column::list(
+            "effect | where | #probability | parameter | #value | #low | #high | unit | interval",
+        );
         let caption = format!(
             "Intervals are those of 95 %; drawn relative to the value, from -{scale} to +{scale}."
         );

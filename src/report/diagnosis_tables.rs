@@ -56,7 +56,7 @@ fn misfit(misfit: &[ChannelMisfit], reference_noise: &str) -> Option<Table> {
         );
         Table::new(
             &caption,
-            vec![Column::of_words("recording"), Column::of_words("channel"), Column::of_numbers("readings"), Column::of_numbers("nominal"), Column::of_numbers("improved"), Column::of_numbers("nominal, σ"), Column::of_numbers("within tolerances, σ"), Column::of_numbers("improved, σ"), Column::of_numbers("not fitted to, σ")],
+            Column::list("recording | channel | #readings | #nominal | #improved | #nominal, σ | #within tolerances, σ | #improved, σ | #not fitted to, σ"),
             misfit.iter().enumerate().map(row).collect(),
         )
     })
@@ -104,7 +104,7 @@ pub(super) fn detectable<'a>(answer: &Answer) -> Option<Section<'a>> {
     (!all.is_empty()).then(|| {
         let table = Table::new(
             "The smallest effects that these recordings would have shown, each alone and nine times in ten, if not always by its name.",
-            vec![Column::of_words("effect"), Column::of_words("numbers")],
+            Column::list("effect | numbers"),
             all.iter().map(row).collect(),
         );
         Section::new("What would have shown", vec![Block::Table(table)])
@@ -142,16 +142,7 @@ pub(super) fn own_numbers<'a>(answer: &Answer) -> Option<Section<'a>> {
     let rows: Vec<Vec<Cell>> = tolerated.iter().enumerate().map(row).collect();
     let table = Table::new(
         "The rig file's own numbers, moved within their tolerances.",
-        vec![
-            Column::of_words("number"),
-            Column::of_numbers("nominal"),
-            Column::of_numbers("found"),
-            Column::of_numbers("low"),
-            Column::of_numbers("high"),
-            Column::of_words("unit"),
-            Column::of_numbers("change"),
-            Column::of_words("at a limit"),
-        ],
+        Column::list("number | #nominal | #found | #low | #high | unit | #change | at a limit"),
         rows,
     );
     let words = paragraphs(answer, &[SectionKind::OwnNumbers]);
@@ -191,7 +182,7 @@ pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<Section<'a>> {
     if !details.considered.is_empty() {
         blocks.push(Block::Table(Table::new(
             "Other explanations, against the one given. Ruled out: fitted in full, at odds below 1 to 100; fell behind: the same by a rough fit, with the piston held to its measured motion, where a law that acts on the motion alone can seem to explain more than it does.",
-            vec![Column::of_words("explanation"), Column::of_words("verdict"), Column::of_numbers("odds"), Column::of_numbers("of the mismatch explained"), Column::of_words("fitted")],
+            Column::list("explanation | verdict | #odds | #of the mismatch explained | fitted"),
             details.considered.iter().map(row).collect(),
         )));
     }
@@ -207,7 +198,7 @@ pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<Section<'a>> {
     if !details.ruled_out.is_empty() {
         blocks.push(Block::Table(Table::new(
             "Variants of the answer, fitted anew: without one of its effects, or with another law in its place.",
-            vec![Column::of_words("explanation"), Column::of_numbers("leaves, RMS")],
+            Column::list("explanation | #leaves, RMS"),
             details.ruled_out.iter().map(row).collect(),
         )));
     }

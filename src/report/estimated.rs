@@ -18,11 +18,7 @@ pub fn estimated(arm: &EstimatedArm, file: &str) -> Section<'static> {
     });
     let masses = Table::new(
         "Links of whose weight the URDF file does not say all, with all that is fixed to them.",
-        vec![
-            Column::of_words("link"),
-            Column::of_numbers("mass [kg]"),
-            Column::of_words("estimated"),
-        ],
+        Column::list("link | #mass [kg] | estimated"),
         rows.collect(),
     );
     let rows = arm.joints.iter().map(|joint| {
@@ -38,13 +34,10 @@ pub fn estimated(arm: &EstimatedArm, file: &str) -> Section<'static> {
             .chain(torques)
             .collect()
     });
-    let heads = ["least", "as estimated", "greatest", "limit"].map(Column::of_numbers);
+    let columns = Column::list("joint | #least | #as estimated | #greatest | #limit");
     let torques = Table::new(
         "Largest torque of each drive along the planned motion [N m].",
-        [Column::of_words("joint")]
-            .into_iter()
-            .chain(heads)
-            .collect(),
+        columns,
         rows.collect(),
     );
     let words = format!(

@@ -12,6 +12,8 @@ mod run;
 mod signals;
 #[cfg(feature = "cli")]
 mod study;
+#[cfg(feature = "cli")]
+pub mod study_charts;
 
 pub use assumed::assumed;
 pub use comparison::{ComparedNumber, Comparison, MOST_DRAWN};
@@ -22,7 +24,7 @@ pub use run::{RunReport, drives};
 pub use signals::{FORCE, Line, PRESSURE, ROLES, STROKE, chart_groups};
 
 #[cfg(feature = "cli")]
-pub use study::{StudyPictures, study};
+pub use study::study;
 
 use crate::document::Drawing;
 

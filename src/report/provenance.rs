@@ -35,11 +35,7 @@ pub fn provenance(from: &Provenance) -> Section<'static> {
             Block::Paragraph(made),
             Block::Table(Table::new(
                 "Files that were read",
-                vec![
-                    Column::of_words("file"),
-                    Column::of_numbers("bytes"),
-                    Column::of_words("SHA-256"),
-                ],
+                Column::list("file | #bytes | SHA-256"),
                 rows.collect(),
             )),
         ],

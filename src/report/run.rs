@@ -352,12 +352,7 @@ fn bounds<'a>(result: &RunResult) -> Option<Section<'a>> {
         .count();
     (!rows.is_empty()).then(|| {
         let caption = format!("{kept} of {} kept.", counted(rows.len(), "bound"));
-        let columns = vec![
-            Column::of_words("verdict"),
-            Column::of_words("number"),
-            Column::of_numbers("value"),
-            Column::of_words("bounds"),
-        ];
+        let columns = Column::list("verdict | number | #value | bounds");
         Section::new(
             "Bounds",
             vec![Block::Table(Table::new(&caption, columns, rows))],
@@ -389,7 +384,10 @@ fn numbers<'a>(result: &RunResult) -> Section<'a> {
         RunSummary::Bench(summary) => rows(summary.as_ref()),
     };
     let every = Block::Folded("Every number, with its key".to_owned(), vec![every(result)]);
-    Section::new("Numbers", vec![Block::Table(table), every])
+    let of_first = "Force, peaks, touch, stroke and path are those of the first pass.";
+    let of_first = passes(result).map(|_| Block::Paragraph(of_first.to_owned()));
+    let blocks = of_first.into_iter().chain([Block::Table(table), every]);
+    Section::new("Numbers", blocks.collect())
 }
 
 /// The numbers that have a row, in the order of the parts; those that the run does not determine in the caption.
@@ -419,12 +417,7 @@ fn rows<S: Measured>(summary: &S) -> Table {
         true => String::new(),
         false => format!("Not determined by this run: {}.", missing.join("; ")),
     };
-    let columns = vec![
-        Column::of_words("part"),
-        Column::of_words("number"),
-        Column::of_numbers("value"),
-        Column::of_words("remark"),
-    ];
+    let columns = Column::list("part | number | #value | remark");
     Table::new(&caption, columns, all.iter().map(row).collect())
 }
 
@@ -444,14 +437,8 @@ fn every<'a>(result: &RunResult) -> Block<'a> {
             Cell::from(label.key),
         ]
     };
-    let columns = vec![
-        Column::of_words("number"),
-        Column::of_numbers("value"),
-        Column::of_words("unit"),
-        Column::of_words("bounds"),
-        Column::of_words("what it is"),
-        Column::of_words("key in summary.json"),
-    ];
+    let columns =
+        Column::list("number | #value | unit | bounds | what it is | key in summary.json");
     let rows = result.metrics().into_iter().map(row).collect();
     let caption = format!("{UNKNOWN}: not determined by this run.");
     Block::Table(Table::new(&caption, columns, rows).sortable())

@@ -245,8 +245,7 @@ fn tenths(tenths: &[ForceTenth]) -> Table {
             number(index, "force_standard_deviation_n", spread),
         ]
     });
-    let heads = ["from, mm", "to, mm", "mean, N", "standard deviation, N"];
-    let heads = heads.map(Column::of_numbers).to_vec();
+    let heads = Column::list("#from, mm | #to, mm | #mean, N | #standard deviation, N");
     Table::new("Contact force by tenths of the edge", heads, rows.collect())
 }
 

@@ -2,13 +2,14 @@
 
 use super::assumed::assumed;
 use super::provenance::provenance;
+use super::study_charts;
 use crate::design::robustness::{
     Distribution, DrawnVariable, KeptShare, LimitShare, Quantiles, Robustness,
 };
 use crate::design::{
     ActiveBound, ActiveLimit, FrontPoint, LimitState, Sensitivity, Side, StudyDocument,
 };
-use crate::document::{Block, Cell, Column, Document, Fact, Number, Section, Table, Tone};
+use crate::document::{Block, Cell, Column, Document, Fact, Figure, Number, Section, Table, Tone};
 use crate::metrics::labels;
 use crate::quantity::display_name::{display_name, number};
 use crate::quantity::{self, UNKNOWN, capital, change, counted, with_unit};
@@ -21,18 +22,9 @@ const FILES: [(&str, &str); 2] = [
 /// A step that would lower the objective by less is no hint [%].
 const IMPROVING_PERCENT: f64 = 0.5;
 
-/// Pictures of a study as SVG.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct StudyPictures<'a> {
-    /// Trade-off front.
-    pub front: Option<&'a str>,
-    /// Robustness of the chosen design.
-    pub robustness: Option<&'a str>,
-}
-
 /// The document of a study.
 #[must_use]
-pub fn study(study: &StudyDocument, pictures: StudyPictures<'_>) -> Document<'static> {
+pub fn study(study: &StudyDocument) -> Document<'static> {
     let result = &study.result;
     let steps_left = result.improving_steps(IMPROVING_PERCENT).next();
     let hint = steps_left.map(|step| {
@@ -44,17 +36,11 @@ pub fn study(study: &StudyDocument, pictures: StudyPictures<'_>) -> Document<'st
     });
     let sections = [
         Some(chosen(study)),
-        result
-            .objectives
-            .trade_off
-            .as_ref()
-            .map(|_| trade_off(study, pictures.front)),
+        study_charts::front(result).map(|front| trade_off(study, front)),
         Some(binding(study)),
         limits(study),
-        result
-            .robustness
-            .as_ref()
-            .map(|found| robustness(found, pictures.robustness)),
+        study_charts::robustness(result)
+            .and_then(|draws| Some(robustness(result.robustness.as_ref()?, draws))),
         Some(steps(study)),
         Some(measured_by(study)),
         assumed(&study.assumed, "design.json"),
@@ -121,8 +107,19 @@ fn verdict(study: &StudyDocument) -> String {
             "{name}: {to} in a design that keeps all limits, which the start, at {from}, does not."
         );
     }
+    let price = result.objectives.trade_off.as_deref();
+    let price = price.and_then(|key| {
+        let (name, unit) = named(key);
+        let [from, to] = [result.start.trade_off?, result.chosen.trade_off?];
+        let way = if to > from { "rises" } else { "falls" };
+        let [from, to] = [from, to].map(|value| with_unit(value, &unit));
+        Some(format!(", while {name} {way} from {from} to {to}"))
+    });
     match chosen < start {
-        true => format!("{name} falls from {from} to {to}."),
+        true => format!(
+            "{name} falls from {from} to {to}{}.",
+            price.unwrap_or_default()
+        ),
         false => format!("{name} stays at {to}: no better design was found."),
     }
 }
@@ -204,15 +201,8 @@ fn chosen(study: &StudyDocument) -> Section<'static> {
             Cell::from(remark),
         ]
     };
-    let columns = vec![
-        Column::of_words("variable"),
-        Column::of_words("unit"),
-        Column::of_numbers("start"),
-        Column::of_numbers("chosen"),
-        Column::of_words("bounds"),
-        Column::of_words("place between them"),
-        Column::of_words("remark"),
-    ];
+    let columns =
+        Column::list("variable | unit | #start | #chosen | bounds | place between them | remark");
     let rows = result.chosen.design.iter().map(row).collect();
     let table = Table::new("What was varied, between which bounds.", columns, rows);
     let files = FILES.map(|(name, words)| Block::File(name.to_owned(), words.to_owned()));
@@ -220,7 +210,7 @@ fn chosen(study: &StudyDocument) -> Section<'static> {
     Section::new("Chosen design", blocks.collect())
 }
 
-fn trade_off(study: &StudyDocument, svg: Option<&str>) -> Section<'static> {
+fn trade_off(study: &StudyDocument, front: Figure<'static>) -> Section<'static> {
     let result = &study.result;
     let names = &result.objectives;
     let second = names.trade_off.as_deref().unwrap_or_default();
@@ -249,14 +239,9 @@ fn trade_off(study: &StudyDocument, svg: Option<&str>) -> Section<'static> {
         rows,
     );
     let words = format!("The {} designs of the front", result.front.len());
-    let picture = svg.map(|svg| Block::Picture("Trade-off front".to_owned(), bare(svg).to_owned()));
     let designs = Block::Folded(words, vec![Block::Table(table.sortable())]);
-    Section::new("Trade-off", picture.into_iter().chain([designs]).collect())
-}
-
-/// An SVG file without what stands before its element.
-fn bare(svg: &str) -> &str {
-    &svg[svg.find("<svg").unwrap_or(0)..]
+    let panels = front.panels.into_iter().map(Block::Panel);
+    Section::new("Trade-off", panels.chain([designs]).collect())
 }
 
 /// What binds, and what more room would do.
@@ -311,7 +296,7 @@ fn binding(study: &StudyDocument) -> Section<'static> {
                 Column::of_numbers(objective(study)),
             ];
             Block::Table(Table::new(
-                "What more room would do to what was minimised.",
+                "What more room would change of what was minimised, as a share of it.",
                 columns,
                 rows,
             ))
@@ -344,13 +329,7 @@ fn limits(study: &StudyDocument) -> Option<Section<'static>> {
         .zip(&result.chosen.limits)
         .map(row)
         .collect();
-    let columns = vec![
-        Column::of_words("limit"),
-        Column::of_numbers("start"),
-        Column::of_words("start keeps it"),
-        Column::of_numbers("chosen"),
-        Column::of_words("chosen keeps it"),
-    ];
+    let columns = Column::list("limit | #start | start keeps it | #chosen | chosen keeps it");
     (!rows.is_empty()).then(|| {
         let table = Table::new("The worst of the scenarios.", columns, rows);
         Section::new("Limits", vec![Block::Table(table)])
@@ -386,7 +365,7 @@ fn steps(study: &StudyDocument) -> Section<'static> {
         Column::of_words("remark"),
     ];
     let table = Table::new(
-        "Each variable alone, a tenth more and less, or to the next entry of its catalogue.",
+        "Each variable alone, a tenth more and less, or to the next entry of its catalogue: what that changes, as a share of the chosen design's value.",
         columns,
         study.result.sensitivities.iter().map(row).collect(),
     );
@@ -427,13 +406,7 @@ fn measured_by(study: &StudyDocument) -> Section<'static> {
             ])
         })
     });
-    let columns = vec![
-        Column::of_words("scenario"),
-        Column::of_words("number"),
-        Column::of_numbers("start"),
-        Column::of_numbers("chosen"),
-        Column::of_numbers("change"),
-    ];
+    let columns = Column::list("scenario | number | #start | #chosen | #change");
     let table = Table::new(
         "What the study names, in each scenario.",
         columns,
@@ -457,17 +430,17 @@ fn measured_by(study: &StudyDocument) -> Section<'static> {
     if !reasons.is_empty() {
         let caption =
             "Designs that were not feasible, by the limit most exceeded or by the reason.";
-        let columns = vec![Column::of_words("reason"), Column::of_numbers("designs")];
+        let columns = Column::list("reason | #designs");
         blocks.push(Block::Table(Table::new(caption, columns, reasons)));
     }
     Section::new("What it was measured by", blocks)
 }
 
 /// How robust the chosen design is.
-fn robustness(found: &Robustness, svg: Option<&str>) -> Section<'static> {
-    let picture = svg.map(|svg| Block::Picture("Robustness".to_owned(), bare(svg).to_owned()));
+fn robustness(found: &Robustness, draws: Figure<'static>) -> Section<'static> {
+    let panels = draws.panels.into_iter().map(Block::Panel);
     let tables = [kept(found), quantiles(found), drawn(found)].map(Block::Table);
-    Section::new("Robustness", picture.into_iter().chain(tables).collect())
+    Section::new("Robustness", panels.chain(tables).collect())
 }
 
 fn kept(found: &Robustness) -> Table {
@@ -488,12 +461,7 @@ fn kept(found: &Robustness) -> Table {
         "Of {} draws at the chosen design, seed {}, those that keep the limits, with the exact binomial interval at 95 %.",
         found.runs, found.seed
     );
-    let columns = vec![
-        Column::of_words("limit"),
-        Column::of_numbers("draws"),
-        Column::of_numbers("share, %"),
-        Column::of_numbers("interval, %"),
-    ];
+    let columns = Column::list("limit | #draws | #share, % | #interval, %");
     Table::new(&caption, columns, [all].into_iter().chain(limits).collect())
 }
 
@@ -508,11 +476,7 @@ fn quantiles(found: &Robustness) -> Table {
     };
     let caption =
         "Values below which 5, 50 and 95 % of the draws lie, beside the chosen design as it is.";
-    let heads = ["as it is", "5 %", "50 %", "95 %"].map(Column::of_numbers);
-    let columns = [Column::of_words("quantity")]
-        .into_iter()
-        .chain(heads)
-        .collect();
+    let columns = Column::list("quantity | #as it is | #5 % | #50 % | #95 %");
     Table::new(caption, columns, found.quantiles.iter().map(row).collect())
 }
 
@@ -523,9 +487,7 @@ fn drawn(found: &Robustness) -> Table {
             .map(Cell::from)
             .to_vec()
     };
-    let heads = ["variable", "unit", "distribution"]
-        .map(Column::of_words)
-        .to_vec();
+    let heads = Column::list("variable | unit | distribution");
     let rows = found.variables.iter().map(row).collect();
     Table::new("What was drawn, as a Latin hypercube.", heads, rows)
 }

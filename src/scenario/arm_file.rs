@@ -15,6 +15,8 @@ mod improved;
 mod keys;
 mod laws;
 mod names;
+mod noise;
+mod order;
 #[cfg(test)]
 mod tests;
 mod toleranced;
@@ -25,7 +27,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use serde_json::Value;
 
-use crate::arm::{BodyInertia, KinematicChain};
+use crate::arm::BodyInertia;
 use crate::keys::check::Section;
 use crate::keys::declaration::of_file;
 use crate::keys::document::{Document, read_text};
@@ -36,26 +38,12 @@ use names::Names;
 use values::Known;
 
 pub use improved::improved_arm_text;
+pub use noise::ArmNoise;
 
 /// Version of the format.
 const SCHEMA: u32 = 1;
 /// What `kind` says.
 pub const RECORDED_ARM: &str = "recorded_arm";
-
-/// Standard deviations of the sensors' noise [SI]; none where there is no such sensor.
-#[derive(Debug, Clone, PartialEq)]
-pub struct ArmNoise {
-    /// Of the joints' angles.
-    pub position: f64,
-    /// Of current or torque of each drive, base first.
-    pub drives: Vec<Option<f64>>,
-    /// Of angles on the links' side.
-    pub link: Option<f64>,
-    /// Of the wrench sensor's forces.
-    pub force: Option<f64>,
-    /// Of its torques.
-    pub moment: Option<f64>,
-}
 
 /// An arm file, checked.
 #[derive(Debug, Clone)]
@@ -192,44 +180,6 @@ pub fn from_text(path: &Path, text: &str) -> Result<ArmFile, ScenarioError> {
 #[must_use]
 pub fn schema() -> Value {
     of_file::<ArmFileKeys>("A recorded arm of idc")
-}
-
-/// Number of each joint in columns, base first, of drives in the order of columns.
-fn column_order(
-    document: &Document<'_>,
-    chain: &KinematicChain,
-    drives: &[&str],
-) -> Result<Vec<usize>, ScenarioError> {
-    let all: Vec<&str> = chain
-        .joints
-        .iter()
-        .map(|joint| joint.name.as_str())
-        .collect();
-    for (index, name) in drives.iter().enumerate() {
-        let section = Section::new(document, format!("drive[{index}]"));
-        if !all.contains(name) {
-            let expected = format!(
-                "a moving joint of the URDF on the way to the flange: {}",
-                all.join(", ")
-            );
-            return Err(section.refuse("joint", format!("{name:?}"), expected));
-        }
-        if drives[..index].contains(name) {
-            let expected = "each joint once".to_owned();
-            return Err(section.refuse("joint", format!("{name:?} again"), expected));
-        }
-    }
-    let number = |name: &&str| {
-        let place = drives.iter().position(|drive| drive == name);
-        place.map(|place| place + 1).ok_or_else(|| {
-            let expected = format!(
-                "a table [[drive]] with joint = {name:?}: the URDF moves {}, each of which has a drive",
-                all.join(", ")
-            );
-            Section::new(document, "").missing("drive", &expected)
-        })
-    };
-    all.iter().map(number).collect()
 }
 
 fn check_recordings(document: &Document<'_>, fit: &[String]) -> Result<(), ScenarioError> {

@@ -100,6 +100,6 @@ test("a study's page is one that is read", async () => {
   assert.ok(height < 6000, `${height} px`);
   const heads = await page.locator("h2").allTextContents();
   for (const head of ["Chosen design", "Trade-off", "What binds", "Limits", "What it was measured by"]) assert.ok(heads.includes(head), `${head} of ${heads}`);
-  assert.ok(await page.locator(".picture svg").isVisible());
+  await page.locator("[data-drawn] canvas").first().waitFor();
   await page.context().close();
 });

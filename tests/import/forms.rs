@@ -542,7 +542,7 @@ fn a_gap_parts_a_recording_and_the_ending_of_its_name_says_its_form() {
     let outcome = folder.idc(&["map.toml", "log.csv", "--out", "made/log.csv", "--split"]);
     assert_eq!(outcome.code, 0, "{}", outcome.err);
     assert!(
-        outcome.out.contains("gaps part it into 2 recordings"),
+        outcome.words().contains("Gaps part it into 2 recordings"),
         "{}",
         outcome.out
     );

@@ -380,7 +380,7 @@ fn marks_of_missing_values_are_named_and_lone_values_are_doubtful() {
     }
     let folder = Folder::new();
     let (map, _) = drafted(&folder, holed("-9999"));
-    let said = folder.idc(&["map.toml", "log.csv"]).out;
+    let said = folder.idc(&["map.toml", "log.csv"]).words();
     assert!(
         said.contains("3 of 300 values lie far") && said.contains("`missing = [-9999]`"),
         "{said}"
@@ -608,10 +608,10 @@ fn logs_found_in_the_field_are_read_or_refused_as_they_should_be() {
             "29.900 s at 10 Hz",
             "4.990 s at 100 Hz",
         ];
-        let fits = span.iter().any(|span| outcome.out.contains(span));
+        let fits = span.iter().any(|span| outcome.words().contains(span));
         assert!(is_asked || fits, "{name}: {}", outcome.out);
         assert_eq!(
-            outcome.out.contains("missing = [-9999]"),
+            outcome.words().contains("missing = [-9999]"),
             name == "sentinel_9999.csv",
             "{name}: {}",
             outcome.out

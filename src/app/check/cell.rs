@@ -129,7 +129,7 @@ fn grinding(report: &mut Report, cell: &Cell) {
                 significant(rate * 1e9, 3),
                 significant(rate / pass.feed * 1e6, 3)
             );
-            report.fact(if index == 0 { "removal" } else { "" }, text);
+            report.fact("removal", text);
         }
     }
     let chamfer = &scenario.workpiece.chamfer;
@@ -280,14 +280,14 @@ fn estimated(report: &mut Report, arm: Option<&EstimatedArm>) -> Result<(), AppE
         shown(arm.mass_spread_percent)
     );
     report.fact("masses", text);
-    for (index, joint) in arm.joints.iter().enumerate() {
+    for joint in &arm.joints {
         let [least, greatest, limit] = [joint.least_n_m, joint.greatest_n_m, joint.limit_n_m]
             .map(|torque| significant(torque, 2));
         let text = format!(
             "{}: {least} to {greatest} of {limit} N m at most",
             joint.joint
         );
-        report.fact(if index == 0 { "torques" } else { "" }, text);
+        report.fact("torques", text);
     }
     report.number("estimated_masses", serde_json::to_value(arm)?);
     Ok(())

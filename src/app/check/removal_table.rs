@@ -36,13 +36,12 @@ pub(super) fn removal_table(path: &Path) -> Result<Report, AppError> {
     let known = columns
         .into_iter()
         .filter_map(|(what, column)| Some((what, column?)));
-    for (index, (what, column)) in known.enumerate() {
+    for (what, column) in known {
         let unit = match column.unit.as_str() {
             "" => String::new(),
             unit => format!(", in {unit}"),
         };
-        let label = if index == 0 { "columns" } else { "" };
-        report.fact(label, format!("{what} from {}{unit}", column.name));
+        report.fact("columns", format!("{what} from {}{unit}", column.name));
     }
     let [force, time, speed, area] = table.nominal.exponents.map(shown);
     let mut law = format!("exponents of force {force}, time {time}, speed {speed}, area {area}");

@@ -1,16 +1,13 @@
 //! Report on a file: facts by name, numbers for programs, the files that it needs and what to do next.
 
-use std::fmt::Write as _;
 use std::path::{Component, Path, PathBuf};
 
 use serde::Serialize;
 
 use super::AppError;
 use crate::device::DeviceParameters;
+use crate::document::{Block, Cell, Column, Document, Section, Style, Table, text};
 use crate::scenario::Expectation;
-
-/// Wide enough for every label.
-const LABEL: usize = 12;
 
 /// An explanation.
 #[derive(Debug, Serialize)]
@@ -90,8 +87,8 @@ impl Report {
             let sides: Vec<String> = sides.into_iter().flatten().collect();
             format!("{} {}", bound.metric, sides.join(" and "))
         };
-        for (index, bound) in bounds.iter().enumerate() {
-            self.fact(if index == 0 { "expected" } else { "" }, one(bound));
+        for bound in bounds {
+            self.fact("expected", one(bound));
         }
     }
 
@@ -124,29 +121,34 @@ impl Report {
         self.fact("device", text);
     }
 
-    /// For people.
+    /// For people; the label of several facts stands beside the first.
     pub(super) fn text(&self) -> String {
-        let mut text = format!("{}: {}\n", self.file.display(), self.kind);
-        let mut line = |label: &str, said: &str| {
-            // Writing into a text cannot fail.
-            let _ = writeln!(text, "  {label:<LABEL$} {said}");
+        let title = self.title.iter().map(|title| ("title", title.clone()));
+        let files = self.files.iter().map(|file| {
+            let absent = if file.there { "" } else { ", NOT THERE" };
+            (
+                "files",
+                format!("{} ({}){absent}", file.path.display(), file.what),
+            )
+        });
+        let mut last = "";
+        let facts = title.chain(self.facts.iter().cloned()).chain(files);
+        let rows = facts.map(|(label, said)| {
+            let shown = if label == last { "" } else { label };
+            last = label;
+            vec![Cell::from(shown), Cell::from(said)]
+        });
+        let table = Table::new("", vec![Column::default(); 2], rows.collect());
+        let notes = self.notes.iter().map(|note| format!("note: {note}"));
+        let blocks = std::iter::once(Block::Table(table));
+        let blocks = blocks.chain(notes.map(Block::Paragraph));
+        let document = Document {
+            title: format!("{}: {}", self.file.display(), self.kind),
+            sections: vec![Section::new("", blocks.collect())],
+            ..Document::default()
         };
-        if let Some(title) = &self.title {
-            line("title", title);
-        }
-        for (label, said) in &self.facts {
-            line(label, said);
-        }
-        for (index, file) in self.files.iter().enumerate() {
-            let absent = if file.there { "" } else { "   NOT THERE" };
-            let said = format!("{} ({}){absent}", file.path.display(), file.what);
-            line(if index == 0 { "files" } else { "" }, &said);
-        }
-        for note in &self.notes {
-            let _ = writeln!(text, "note: {note}");
-        }
-        let _ = writeln!(text, "next: {}", self.next);
-        text
+        // A command is to be copied whole.
+        text(&document, Style::Plain) + &format!("next: {}\n", self.next)
     }
 
     /// For programs.

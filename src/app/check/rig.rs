@@ -91,8 +91,8 @@ fn describe(report: &mut Report, rig: &RigFile) {
     let tolerances: Vec<String> = (rig.tolerances.iter())
         .map(|t| format!("{} to {} %", t.key, shown(t.tolerance * 100.0)))
         .collect();
-    for (index, chunk) in tolerances.chunks(2).enumerate() {
-        report.fact(if index == 0 { "nominal" } else { "" }, chunk.join(", "));
+    if !tolerances.is_empty() {
+        report.fact("nominal", tolerances.join(", "));
     }
     for present in &rig.effects {
         report.fact("effect", present.effect.name);

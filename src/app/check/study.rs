@@ -15,7 +15,7 @@ use crate::shell::word;
 pub(super) fn study(file: &Path) -> Result<Report, AppError> {
     let study = design::load(file)?;
     let mut report = Report::new(file, "a design study", Some(&study.title));
-    for (index, variable) in study.variables.iter().enumerate() {
+    for variable in &study.variables {
         let range = match &variable.domain {
             Domain::Linear(low, high) => format!("{} to {}", shown(*low), shown(*high)),
             Domain::Logarithmic(low, high) => {
@@ -24,25 +24,20 @@ pub(super) fn study(file: &Path) -> Result<Report, AppError> {
             Domain::Catalogue(entries) => format!("one of {} catalogue values", entries.len()),
         };
         let start = shown(variable.start);
-        report.fact(
-            if index == 0 { "varied" } else { "" },
-            format!("{}: {range}, from {start}", variable.key),
-        );
+        report.fact("varied", format!("{}: {range}, from {start}", variable.key));
     }
     report.fact("minimised", study.objective.metric.as_str());
     if let Some(key) = study.trade_off_key() {
         let front = format!("against {key}, {} points of the front", study.front_points);
         report.fact("traded off", front);
     }
-    for (index, limit) in study.limits.iter().enumerate() {
+    for limit in &study.limits {
         let side = match limit.side {
             design::Side::Min => "at least",
             design::Side::Max => "at most",
         };
-        report.fact(
-            if index == 0 { "limits" } else { "" },
-            format!("{} {side} {}", limit.key(), shown(limit.bound)),
-        );
+        let bound = shown(limit.bound);
+        report.fact("limits", format!("{} {side} {bound}", limit.key()));
     }
     let scenarios = study.scenarios.len();
     report.fact(

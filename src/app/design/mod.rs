@@ -14,8 +14,9 @@ use super::files::{
 };
 use crate::design::{self, Domain, Study, StudyDocument, Variable, VariedKey};
 use crate::document::{Style, html, text};
+use crate::figure::svg;
 use crate::recording::provenance::Provenance;
-use crate::report::{self, StudyPictures};
+use crate::report::{self, study_charts};
 use crate::scenario::{self, AnyScenario, AssumedValue, files_of_cell};
 
 /// All that a study may write.
@@ -78,10 +79,6 @@ impl PreparedStudy {
     ) -> Result<FinishedStudy, AppError> {
         let result = design::run(&self.study, &self.evaluator, progress)?;
         let override_text = result.override_text();
-        let pictures = [
-            (FRONT, design::front_svg(&result)?),
-            (ROBUSTNESS, design::robustness_svg(&result)?),
-        ];
         let study = StudyDocument {
             study: self.study.path.display().to_string(),
             scenarios: (self.study.scenarios.iter())
@@ -93,13 +90,17 @@ impl PreparedStudy {
             provenance: self.provenance.clone(),
         };
         let document = serde_json::to_string_pretty(&study)?;
-        let report = report::study(
-            &study,
-            StudyPictures {
-                front: pictures[0].1.as_deref(),
-                robustness: pictures[1].1.as_deref(),
-            },
-        );
+        let figures = [
+            (FRONT, study_charts::front(&study.result)),
+            (ROBUSTNESS, study_charts::robustness(&study.result)),
+        ];
+        let drawn = |(name, figure): &(_, Option<_>)| match figure {
+            Some(figure) => svg(figure).map(|svg| (*name, Some(svg))),
+            None => Ok((*name, None)),
+        };
+        let pictures: Result<Vec<_>, _> = figures.iter().map(drawn).collect();
+        let pictures = pictures?;
+        let report = report::study(&study);
         let page = html(&report);
         let mut files = vec![
             (DESIGN, document.as_str()),

@@ -15,6 +15,7 @@ use super::shared::{SharedFamily, SharingCase, shared};
 use crate::case::{RIG, is_cell_case};
 use crate::diagnosis::answer::{Answer, Verdict};
 use crate::diagnosis::effort::EffortLimit;
+use crate::document::{Block, Cell, Column, Document, Section, Style, Table, text};
 use crate::replay::LoadedCell;
 use crate::scenario::rig_file::load_rig;
 
@@ -196,10 +197,13 @@ pub(super) fn report(
             say(&format!("{}\n", serde_json::json!({ "shared": shared })))?;
         }
     } else if !quiet {
-        say(&table(outcomes))?;
-        for family in shared {
-            say(&format!("\n{}", family.text()))?;
-        }
+        let cases = Section::new("", vec![Block::Table(table(outcomes))]);
+        let families = shared.iter().map(SharedFamily::section);
+        let document = Document {
+            sections: std::iter::once(cases).chain(families).collect(),
+            ..Document::default()
+        };
+        say(&text(&document, Style::Plain))?;
         say(&format!("written to {}\n", out.display()))?;
     }
     let failed: Vec<&Outcome> = outcomes.iter().filter(|o| o.result.is_err()).collect();
@@ -218,31 +222,25 @@ pub(super) fn report(
     })
 }
 
-fn table(outcomes: &[Outcome]) -> String {
-    let wide = outcomes.iter().map(|o| o.name.chars().count()).max();
-    let wide = wide.unwrap_or(0).max(4);
-    let mut text = format!(
-        "{:<wide$}  {:<15}  {:>7}  effects\n",
-        "case", "verdict", "seconds"
-    );
-    for outcome in outcomes {
-        let name = &outcome.name;
-        let line = match &outcome.result {
+fn table(outcomes: &[Outcome]) -> Table {
+    let row = |outcome: &Outcome| {
+        let [verdict, seconds, effects] = match &outcome.result {
             Ok(Done { answer, kept }) => {
                 let effects = answer.effects.iter();
                 let effects = effects.map(|e| e.name.clone() + &e.parameters.place_words());
                 let effects: Vec<String> = effects.collect();
                 let note = if *kept { "  (stood already)" } else { "" };
-                let (verdict, seconds) = (word(answer.verdict), answer.seconds);
-                let effects = effects.join(" + ");
-                format!("{name:<wide$}  {verdict:<15}  {seconds:>7.1}  {effects}{note}")
+                let effects = effects.join(" + ") + note;
+                let seconds = format!("{:.1}", answer.seconds);
+                [word(answer.verdict).to_owned(), seconds, effects]
             }
-            Err(_) => format!("{name:<wide$}  failed"),
+            Err(_) => ["failed".to_owned(), String::new(), String::new()],
         };
-        text.push_str(line.trim_end());
-        text.push('\n');
-    }
-    text
+        let cells = [outcome.name.clone(), verdict, seconds, effects];
+        cells.map(Cell::from).to_vec()
+    };
+    let columns = Column::list("case | verdict | #seconds | effects");
+    Table::new("", columns, outcomes.iter().map(row).collect())
 }
 
 fn word(verdict: Verdict) -> &'static str {

@@ -159,6 +159,13 @@ impl Prepared {
                 answer.details.account.add(SectionKind::HowToRun, vec![how]);
             }
         }
+        if case.is_of_arm() && !answer.effects.is_empty() {
+            let improved = word(&self.folder.path().join(IMPROVED));
+            let how = format!(
+                "`idc predict {improved} LOG.csv` predicts what the arm's sensors read along another path, with what was found."
+            );
+            answer.details.account.add(SectionKind::HowToRun, vec![how]);
+        }
         let fit = answer.kept("fit.svg", fit).flatten();
         let outputs = Outputs {
             answer,

@@ -10,7 +10,8 @@ use crate::diagnosis::answer::shared::{
     InAll, InCase, NOT_STATED, SAME_NOMINAL, STATED, not_shown, together,
 };
 use crate::diagnosis::answer::statements::TRUSTED;
-use crate::diagnosis::answer::words::{capital, listed, percent, wrapped};
+use crate::diagnosis::answer::words::{capital, listed, percent};
+use crate::document::{Block, Section};
 use crate::effects::{Effect, candidates, numbers_off};
 use crate::plant::DeviceParts;
 use crate::quantity::{DIGITS, significant, with_unit};
@@ -353,34 +354,31 @@ impl<'a> Together<'a> {
 }
 
 impl SharedFamily {
-    /// It in words, a paragraph each; without shared parts what would let the cases decide.
-    pub(super) fn text(&self) -> String {
-        let words = capital(&self.words);
-        let count = self.cases.len();
-        if self.members.is_empty() {
-            let words = format!(
-                "{words} in {count} cases: where they have a part in common, [shares] in their rig.toml says so, and they decide together which it is."
-            );
-            return wrapped("", &words);
-        }
-        let mut text = format!("{words} in {count} cases. Where it is the same in all:\n");
-        for member in &self.members {
-            text += &wrapped("- ", &member.words());
-        }
+    /// It in words; without shared parts what would let the cases decide.
+    pub(super) fn section(&self) -> Section<'static> {
+        let title = format!("{} in {} cases", capital(&self.words), self.cases.len());
+        let Some(first) = self.members.first() else {
+            let words = "Where they have a part in common, [shares] in their rig.toml says so, and they decide together which it is.";
+            return Section::new(&title, vec![Block::Paragraph(words.to_owned())]);
+        };
+        let mut said = vec!["Where it is the same in all:".to_owned()];
+        said.extend(self.members.iter().map(SharedMember::words));
         if !self.not_shown_in.is_empty() {
             let names = listed(&self.not_shown_in);
-            let words = format!("With a part of these, and nothing of it to be seen: {names}.");
-            text += &wrapped("  ", &words);
+            said.push(format!(
+                "With a part of these, and nothing of it to be seen: {names}."
+            ));
         }
         let open = self.members.iter();
         let open = open.filter(|m| m.shared.is_empty() && !m.stated);
         let open: Vec<String> = open.map(|m| m.part.replace('_', " ")).collect();
-        if self.members[0].probability < 1.0 - SAME_NOMINAL && !open.is_empty() {
+        if first.probability < 1.0 - SAME_NOMINAL && !open.is_empty() {
             let open = listed(&open);
-            let words = format!("Not stated in [shares]: which {open} each case has.");
-            text += &wrapped("  ", &words);
+            said.push(format!(
+                "Not stated in [shares]: which {open} each case has."
+            ));
         }
-        text
+        Section::new(&title, said.into_iter().map(Block::Paragraph).collect())
     }
 }
 
@@ -504,7 +502,8 @@ mod tests {
         };
         assert_eq!(gain(&two).1, 2);
         assert!(gain(&found).0 < 0.2 * gain(&two).0, "{found:?}");
-        assert!(found.text().contains("case-2"), "{}", found.text());
+        let said = format!("{:?}", found.section());
+        assert!(said.contains("case-2"), "{said}");
         // One with another load cell says nothing of this one.
         let other = [
             &all[..],
@@ -539,6 +538,7 @@ mod tests {
         let apart = [(BORE, LC_7, named(1.0)), (BORE, "", named(1.0))];
         let found = of(&apart).unwrap();
         assert!(found.members.is_empty());
-        assert!(found.text().contains("[shares]"), "{}", found.text());
+        let said = format!("{:?}", found.section());
+        assert!(said.contains("[shares]"), "{said}");
     }
 }

@@ -114,13 +114,7 @@ fn line((number, edge): (usize, &EdgeFault<DVec3>)) -> DrawnLine {
 }
 
 fn table(edges: &[EdgeFault<DVec3>]) -> Table {
-    let columns = vec![
-        Column::of_words("id"),
-        Column::of_words("fault"),
-        Column::of_numbers("length, mm"),
-        Column::of_words("start, mm"),
-        Column::of_words("end, mm"),
-    ];
+    let columns = Column::list("id | fault | #length, mm | start, mm | end, mm");
     let row = |(number, edge): (usize, &EdgeFault<DVec3>)| {
         let [from, to] = edge.ends;
         let cells = [

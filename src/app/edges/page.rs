@@ -256,17 +256,9 @@ fn to_paste((mesh, unit, sharp_angle): Source<'_>, curve: &EdgeCurve) -> String 
 
 /// All curves with their numbers.
 fn table(list: &EdgeList) -> Table {
-    let columns = vec![
-        Column::of_words("id"),
-        Column::of_words("form"),
-        Column::of_numbers("length, mm"),
-        Column::of_numbers("angle, deg"),
-        Column::of_words("side"),
-        Column::of_words("start, mm"),
-        Column::of_words("end, mm"),
-        Column::of_words("closed"),
-        Column::of_numbers("corners"),
-    ];
+    let columns = Column::list(
+        "id | form | #length, mm | #angle, deg | side | start, mm | end, mm | closed | #corners",
+    );
     let row = |curve: &EdgeCurve| {
         let cells = [
             curve.id.clone(),

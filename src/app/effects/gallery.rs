@@ -5,11 +5,10 @@ use std::path::Path;
 
 use super::super::error::AppError;
 use super::super::files::{OverwritePolicy, prepare_file};
-use super::page::{Explained, by_subsystem};
+use super::page::{Explained, by_subsystem, list};
 use super::picture::picture;
 use crate::demonstration::{self as scene, Stage};
-use crate::diagnosis::answer::words::capital;
-use crate::effects::Effect;
+use crate::document::markdown_below;
 use crate::recording::atomic::write_text;
 
 /// File of the text, and folder of the pictures beside it.
@@ -29,10 +28,9 @@ regulator alone.
 
 Numbers are in the units that people read; a key ends in the unit in which a file has it, and `--with NAME:KEY=VALUE` takes any other unit of it. Ranges and usual sizes are those of the device
 of [models/device.toml](../models/device.toml), where they depend on one. \"The source paper\" is that of [docs/PAPER.md](PAPER.md).
-
 ";
 
-const END: &str = "\
+const END: &str = "
 ---
 
 This page and its pictures are made by `idc effects --gallery docs --force`, of the header comments in `src/effects/`.
@@ -42,21 +40,11 @@ This page and its pictures are made by `idc effects --gallery docs --force`, of 
 pub(super) fn write(folder: &Path, policy: OverwritePolicy) -> Result<String, AppError> {
     let mut stages: BTreeMap<String, Stage> = BTreeMap::new();
     let mut text = INTRODUCTION.to_owned();
-    let groups: Vec<(&str, Vec<&Effect>)> = by_subsystem().collect();
-    for (heading, effects) in &groups {
-        let link = |effect: &&Effect| {
-            let name = effect.vocabulary().0;
-            let mark = if scene::is_of_part(effect) { "\\*" } else { "" };
-            format!("- [{name}](#{name}){mark}: {}\n", effect.header().meaning)
-        };
-        text += &format!("**{}**\n\n", capital(heading));
-        text.extend(effects.iter().map(link));
-        text.push('\n');
-    }
+    text += &markdown_below(&list(), 3);
     let mut summary = String::new();
     let mut pictures = Vec::new();
-    for (heading, effects) in &groups {
-        text += &format!("## {heading}\n\n");
+    for (heading, effects) in by_subsystem() {
+        text += &format!("\n## {heading}\n");
         for effect in effects {
             let scene = scene::of(effect).scene;
             let key = scene.key();
@@ -66,7 +54,8 @@ pub(super) fn write(folder: &Path, policy: OverwritePolicy) -> Result<String, Ap
             let Some(stage) = stages.get(&key) else {
                 continue;
             };
-            text += &Explained::new(effect, stage).markdown();
+            let page = Explained::new(effect, stage).document(PICTURES);
+            text += &format!("\n{}", markdown_below(&page, 3));
             let name = effect.vocabulary().0;
             let drawn = picture(effect, stage)?;
             summary += &format!(

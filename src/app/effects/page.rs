@@ -1,12 +1,10 @@
 //! Description of an effect, for a terminal, a program and docs/EFFECTS.md.
 
-use std::fmt::Write as _;
-
 use serde::Serialize;
 
 use crate::demonstration::{self as scene, Scene, Stage};
 use crate::diagnosis::answer::words::{capital, display_name};
-use crate::document::{Block, Cell, Column, Document, Section, Style, Table, text};
+use crate::document::{Block, Cell, Column, Document, Section, Table};
 use crate::effects::{Effect, Header, Subsystem, Which, kinds};
 use crate::plant::PlantParameters;
 use crate::quantity::significant;
@@ -172,112 +170,79 @@ impl Explained {
         }
     }
 
-    /// For a terminal.
-    pub(super) fn text(&self) -> String {
-        let mut equation = vec![Block::Lines(self.equation.join("\n"))];
-        equation.push(Block::Paragraph(self.legend.to_owned()));
-        equation.push(Block::Paragraph(format!("Source: {}", self.source)));
-        let columns = vec![
-            Column::of_words("key"),
-            Column::of_words("number"),
-            Column::of_words("range"),
-            Column::of_numbers("usual"),
-        ];
-        let rows = self
-            .parameters
-            .iter()
-            .map(|number| number.cells().map(Cell::from).to_vec());
+    /// For a terminal, and docs/EFFECTS.md; its picture lies in a folder.
+    pub(super) fn document(&self, pictures: &str) -> Document<'static> {
+        let lines = |text: &str| Block::Lines(text.to_owned());
+        let words = |text: &str| Block::Paragraph(text.to_owned());
+        let columns = Column::list("key | number | range | #usual");
+        let rows = self.parameters.iter();
+        let rows = rows.map(|number| number.cells().map(Cell::from).to_vec());
         let numbers = Table::new("", columns, rows.collect());
         let rivals = self.confused_with.iter();
-        let rivals = rivals.map(|rival| format!("{}: {}", rival.name, rival.distinguished_by));
-        let lines = |text: &str| vec![Block::Lines(text.to_owned())];
-        let own = match self.chain {
-            Some(chain) if self.command.is_none() => {
-                format!("In a rig file with chain = \"{chain}\" below [rig]")
-            }
-            _ => "In a scenario".to_owned(),
+        let rivals =
+            rivals.map(|rival| vec![self.rival(rival.name), rival.distinguished_by.into()]);
+        let columns = Column::list("effect | distinguished by");
+        let rivals = Table::new("", columns, rivals.collect());
+        let file = match self.chain {
+            Some(chain) => format!("In a rig file with chain = \"{chain}\" below [rig]"),
+            None => "In a scenario".to_owned(),
         };
-        let command = self.command.as_deref();
-        let picture = format!(
-            "{}, or idc effects {} --out FILE.svg",
-            self.picture, self.name
-        );
-        let sections = [
-            Some(Section::new("Equation", equation)),
-            Some(Section::new("Numbers", vec![Block::Table(numbers)])),
-            Some(Section::new(
-                "Shows as",
-                vec![Block::Paragraph(capital(self.signature))],
-            )),
-            Some(Section::new(
-                "Confused with",
-                rivals.map(Block::Paragraph).collect(),
-            )),
-            command.map(|command| Section::new("Try it", lines(command))),
-            Some(Section::new(&own, lines(&self.lines.join("\n")))),
-            Some(Section::new("Picture", vec![Block::Paragraph(picture)])),
+        let (picture, name) = (format!("{pictures}/{}.svg", self.name), self.name);
+        let source = format!("Source: {}", self.source);
+        let equation = vec![
+            lines(&self.equation.join("\n")),
+            words(self.legend),
+            words(&source),
         ];
-        text(
-            &Document {
-                title: self.name.to_owned(),
-                verdict: format!("{}. {}", capital(self.meaning), self.cause),
-                sections: sections.into_iter().flatten().collect(),
-                ..Document::default()
-            },
-            Style::Plain,
-        )
+        let shown = format!("{name}, nominal and with the effect");
+        let parts = [
+            ("Equation", equation),
+            ("Numbers", vec![Block::Table(numbers)]),
+            ("Shows as", vec![words(&capital(self.signature))]),
+            ("Confused with", vec![Block::Table(rivals)]),
+            (
+                "Try it",
+                self.command.as_deref().map(lines).into_iter().collect(),
+            ),
+            (&file, vec![lines(&self.lines.join("\n"))]),
+            ("Picture", vec![Block::File(picture, shown)]),
+        ];
+        let sections = parts.map(|(title, blocks)| Section::new(title, blocks));
+        let lead = format!("{}. {}", capital(self.meaning), self.cause);
+        Document {
+            title: name.to_owned(),
+            lead: vec![lead.trim_end().to_owned()],
+            sections: sections.into(),
+            ..Document::default()
+        }
     }
 
-    /// For docs/EFFECTS.md.
-    pub(super) fn markdown(&self) -> String {
-        let mut text = format!("### {}\n\n{}.", self.name, capital(self.meaning));
-        if !self.cause.is_empty() {
-            text = format!("{text} {}", self.cause);
+    /// What it is confused with: another effect, where there is one of that name, by its own page.
+    fn rival(&self, name: &str) -> Cell {
+        let first = name.split(' ').next().unwrap_or_default();
+        match first.contains('_') && first != self.name {
+            true => Cell::Link(name.to_owned(), format!("#{first}")),
+            false => Cell::from(name),
         }
-        text += "\n\n";
-        for line in self.equation {
-            let _ = writeln!(text, "    {line}");
-        }
-        let _ = writeln!(text, "\n{} Source: {}\n", plain(self.legend), self.source);
-        text += "| number | | range | usual |\n| --- | --- | --- | --- |\n";
-        for [key, words, range, usual] in self.parameters.iter().map(Number::cells) {
-            let _ = writeln!(text, "| `{key}` | {words} | {range} | {usual} |");
-        }
-        let _ = writeln!(
-            text,
-            "\n![{}: nominal and with the effect](pictures/effects/{}.svg)\n",
-            self.name, self.name
-        );
-        let _ = writeln!(text, "**Shows as.** {}\n", plain(&capital(self.signature)));
-        text += "**Confused with**\n\n";
-        for rival in &self.confused_with {
-            let first = rival.name.split(' ').next().unwrap_or_default();
-            let name = match first.contains('_') && first != self.name {
-                true => rival
-                    .name
-                    .replacen(first, &format!("[{first}](#{first})"), 1),
-                false => rival.name.to_owned(),
-            };
-            let _ = writeln!(text, "- {name}: {}", plain(rival.distinguished_by));
-        }
-        match (&self.command, self.chain) {
-            (Some(command), _) => {
-                let _ = writeln!(
-                    text,
-                    "\n**Try it**, or put it into a scenario:\n\n    {command}\n"
-                );
-            }
-            (None, chain) => {
-                let chain = chain.unwrap_or_default();
-                let words = "of a part of the device alone, in a rig file with";
-                let _ = writeln!(text, "\n**Try it** {words} `chain = \"{chain}\"`:\n");
-            }
-        }
-        for line in &self.lines {
-            let _ = writeln!(text, "    {line}");
-        }
-        text.push('\n');
-        text
+    }
+}
+
+/// All effects by subsystem, each with its meaning.
+pub(super) fn list() -> Document<'static> {
+    let row = |effect: &&Effect| {
+        let name = effect.vocabulary().0;
+        let mark = if scene::is_of_part(effect) { "*" } else { "" };
+        let link = Cell::Link(format!("{name}{mark}"), format!("#{name}"));
+        vec![link, effect.header().meaning.as_str().into()]
+    };
+    let sections = by_subsystem().map(|(heading, effects)| {
+        let columns = Column::list("effect | meaning");
+        let table = Table::new("", columns, effects.iter().map(row).collect());
+        Section::new(heading, vec![Block::Table(table)])
+    });
+    Document {
+        sections: sections.collect(),
+        ..Document::default()
     }
 }
 
@@ -303,13 +268,6 @@ impl Number {
 /// A size is what people say: three digits of it.
 fn rounded(value: f64) -> f64 {
     format!("{value:.2e}").parse().unwrap_or(value)
-}
-
-/// A text in which Markdown sees no signs of its own.
-fn plain(text: &str) -> String {
-    text.replace('*', "\\*")
-        .replace('_', "\\_")
-        .replace('<', "&lt;")
 }
 
 /// Effects with their subsystem, in the order in which they are listed.

@@ -138,7 +138,7 @@ fn finish(
     let Head { program, files, .. } = Plan::open(plan)?.head;
     let found = Found::of(&recordings, layout, (&program, &files));
     let document = serde_json::to_string_pretty(&found)?;
-    let report = page::document(&found)?;
+    let report = page::document(&found);
     folder.write_texts(&[(REPORT, &html(&report)), (FLEET, &document)])?;
     if arguments.json {
         say(&format!("{document}\n"))?;

@@ -1,31 +1,31 @@
 //! The page of a fleet.
 
-use super::super::error::AppError;
 use super::table::TABLE;
+use crate::diagnosis::answer::words::display_name;
 use crate::document::{
-    Block, Cell, Column, Document, Fact, Figure, Horizontal, Marker, Panel, Role, Section, Series,
-    Stroke, Table, Tone,
+    Block, Cell, Column, Document, Fact, Horizontal, Marker, Panel, Role, Section, Series, Stroke,
+    Table, Tone,
 };
-use crate::figure::svg;
 use crate::fleet::{DeviceFound, Found, NumberChanged, NumberSeries, date_of_day, words};
-use crate::quantity::display_name::{display_name, number};
+use crate::quantity::display_name::number;
+use crate::quantity::{DIGITS, significant};
 use crate::report::sources;
 
 /// The document of a fleet.
-pub(in super::super) fn document(found: &Found) -> Result<Document<'static>, AppError> {
+pub(in super::super) fn document(found: &Found) -> Document<'static> {
     let something = found
         .devices
         .iter()
         .any(|d| !d.effects.is_empty() || !d.changed.is_empty());
     let mut sections = vec![devices(found)];
     sections.extend(changed(found));
-    sections.extend(courses(found)?);
+    sections.extend(courses(found));
     sections.extend(listed(
         "Unlike the others",
-        ["device", "in what"],
+        "device | in what",
         &found.unlike,
     ));
-    sections.extend(listed("Not read", ["recording", "why"], &found.unread));
+    sections.extend(listed("Not read", "recording | why", &found.unread));
     sections.push(sources(&found.program, &found.files));
     let facts = [
         ("recordings", found.recordings.to_string(), String::new()),
@@ -36,7 +36,7 @@ pub(in super::super) fn document(found: &Found) -> Result<Document<'static>, App
                 .to_owned(),
         ),
     ];
-    Ok(Document {
+    Document {
         title: "Fleet".to_owned(),
         verdict: found.verdict(),
         tone: if something { Tone::Found } else { Tone::Good },
@@ -52,7 +52,7 @@ pub(in super::super) fn document(found: &Found) -> Result<Document<'static>, App
             "Made by idc fleet. {TABLE} beside this page has a row for each number of each recording."
         ),
         ..Document::default()
-    })
+    }
 }
 
 fn devices(found: &Found) -> Section<'static> {
@@ -76,14 +76,8 @@ fn devices(found: &Found) -> Section<'static> {
             Cell::from(single.collect::<Vec<_>>().join(", ")),
         ]
     };
-    let columns = vec![
-        Column::of_words("device"),
-        Column::of_words("dates"),
-        Column::of_numbers("recordings"),
-        Column::of_words("found"),
-        Column::of_words("in single recordings"),
-    ];
-    let caption = "Found: in at least three recordings and in half of those since. What single recordings show is no alarm.";
+    let columns = Column::list("device | dates | #recordings | found | in single recordings");
+    let caption = "Found: in at least three recordings, and in half of those since it was first seen. What single recordings show is no alarm.";
     let table = Table::new(caption, columns, found.devices.iter().map(row).collect());
     Section::new("Devices", vec![Block::Table(table)])
 }
@@ -91,8 +85,9 @@ fn devices(found: &Found) -> Section<'static> {
 fn changed(found: &Found) -> Option<Section<'static>> {
     let rows = found.devices.iter().flat_map(|device| {
         device.changed.iter().map(move |changed: &NumberChanged| {
-            let (name, unit) = display_name(&changed.number);
-            let per_day = changed.per_day.map_or(String::new(), |[slope, low, high]| {
+            let (name, unit, factor) = display_name(&changed.number);
+            let per_day = changed.per_day.map_or(String::new(), |trend| {
+                let [slope, low, high] = trend.map(|value| factor * value);
                 format!("{} ({} to {})", number(slope), number(low), number(high))
             });
             let chance = 100.0 * changed.since.probability;
@@ -100,9 +95,9 @@ fn changed(found: &Found) -> Option<Section<'static>> {
                 device.name.clone(),
                 words(&changed.effect),
                 name,
-                unit,
-                number(changed.before),
-                number(changed.after),
+                unit.to_owned(),
+                number(factor * changed.before),
+                number(factor * changed.after),
                 changed.since.words(),
                 per_day,
                 format!("{chance:.2}"),
@@ -112,17 +107,9 @@ fn changed(found: &Found) -> Option<Section<'static>> {
         })
     });
     let rows: Vec<Vec<Cell>> = rows.collect();
-    let columns = vec![
-        Column::of_words("device"),
-        Column::of_words("effect"),
-        Column::of_words("number"),
-        Column::of_words("unit"),
-        Column::of_numbers("before"),
-        Column::of_numbers("at the end"),
-        Column::of_words("since (95 %)"),
-        Column::of_numbers("trend a day (95 %)"),
-        Column::of_numbers("chance [%]"),
-    ];
+    let columns = Column::list(
+        "device | effect | number | unit | #before | #at the end | since (95 %) | #trend a day (95 %) | #chance [%]",
+    );
     let words = "Chance: how often a number that does not change shows as much. All numbers of the fleet together give a false alarm in one of twenty reports.";
     (!rows.is_empty()).then(|| {
         let table = Table::new("", columns, rows);
@@ -134,27 +121,40 @@ fn changed(found: &Found) -> Option<Section<'static>> {
 }
 
 /// Numbers of effects, and those that changed, over the days.
-fn courses(found: &Found) -> Result<Option<Section<'static>>, AppError> {
-    let mut blocks = Vec::new();
+fn courses(found: &Found) -> Option<Section<'static>> {
+    let (mut rows, mut panels) = (Vec::new(), Vec::new());
     for device in &found.devices {
         let of = |series: &&NumberSeries| {
             let same = |c: &&NumberChanged| c.effect == series.effect && c.number == series.number;
             !series.effect.is_empty() || device.changed.iter().any(|c| same(&c))
         };
-        let panels: Vec<Panel<'static>> = (device.series.iter().filter(of))
-            .filter_map(|series| panel(device, series))
-            .collect();
-        if panels.is_empty() {
-            continue;
+        for series in device.series.iter().filter(of) {
+            rows.extend(ends(device, series));
+            panels.extend(panel(device, series).map(Block::Panel));
         }
-        blocks.push(Block::Heading(device.name.clone()));
-        let title = String::new();
-        blocks.push(Block::Picture(
-            device.name.clone(),
-            svg(&Figure { title, panels })?,
-        ));
     }
-    Ok((!blocks.is_empty()).then(|| Section::new("Over the days", blocks)))
+    let columns = "device | of | number | unit | #first day | #last day | #least | #largest";
+    (!rows.is_empty()).then(|| {
+        let caption = "An effect that was found is fitted to all recordings of its device; before it was first seen its number lies at the end of its range at which it does nothing.";
+        let table = Block::Table(Table::new(caption, Column::list(columns), rows));
+        Section::new("Over the days", [table].into_iter().chain(panels).collect())
+    })
+}
+
+/// Where a number begins and ends, and between what it lies.
+fn ends(device: &DeviceFound, series: &NumberSeries) -> Option<Vec<Cell>> {
+    let (name, unit, factor) = display_name(&series.number);
+    let of = match series.effect.as_str() {
+        "" => "nominal".to_owned(),
+        effect => words(effect),
+    };
+    let values = &series.values;
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let shown = [*values.first()?, *values.last()?, least, most];
+    let shown = shown.map(|value| Cell::from(significant(factor * value, DIGITS)));
+    let words = [device.name.clone(), of, name, unit.to_owned()].map(Cell::from);
+    Some(words.into_iter().chain(shown).collect())
 }
 
 fn panel(device: &DeviceFound, series: &NumberSeries) -> Option<Panel<'static>> {
@@ -173,19 +173,20 @@ fn panel(device: &DeviceFound, series: &NumberSeries) -> Option<Panel<'static>> 
         Some((days[place], change.since.date.clone()))
     });
     let markers = at.filter(|(at, _)| (0.0..=last).contains(at));
-    let (name, unit) = display_name(&series.number);
-    let label = match unit.as_str() {
+    let (name, unit, factor) = display_name(&series.number);
+    let label = match unit {
         "" => name,
         unit => format!("{name} [{unit}]"),
     };
+    let values: Vec<f64> = series.values.iter().map(|value| factor * value).collect();
     Some(Panel {
-        title: words(&series.effect),
+        title: format!("{}: {}", device.name, words(&series.effect)),
         vertical_label: label,
         horizontal: Horizontal::Quantity(format!("days since {}", date_of_day(first))),
         series: vec![Series::new(
             "",
             days,
-            series.values.clone(),
+            values,
             Role::Estimate,
             Stroke::Points,
         )],
@@ -197,15 +198,11 @@ fn panel(device: &DeviceFound, series: &NumberSeries) -> Option<Panel<'static>> 
     })
 }
 
-fn listed(title: &str, columns: [&str; 2], pairs: &[(String, String)]) -> Option<Section<'static>> {
+fn listed(title: &str, columns: &str, pairs: &[(String, String)]) -> Option<Section<'static>> {
     let row =
         |(one, other): &(String, String)| vec![Cell::from(one.clone()), Cell::from(other.clone())];
     (!pairs.is_empty()).then(|| {
-        let table = Table::new(
-            "",
-            columns.map(Column::of_words).to_vec(),
-            pairs.iter().map(row).collect(),
-        );
+        let table = Table::new("", Column::list(columns), pairs.iter().map(row).collect());
         Section::new(title, vec![Block::Table(table)])
     })
 }

@@ -33,7 +33,7 @@ struct RecordingReport {
     /// Origin of its times, in seconds since 1970; none where it is the logs' own start.
     origin_unix_s: Option<f64>,
     logs: Vec<LogReport>,
-    channels: Vec<ChannelReport>,
+    channels: Vec<Finding>,
 }
 
 /// A log.
@@ -52,24 +52,6 @@ struct ClockReport {
     added_s: f64,
     correlation: f64,
     step_s: f64,
-}
-
-/// A channel.
-#[derive(Debug, Serialize)]
-struct ChannelReport {
-    quantity: String,
-    unit: &'static str,
-    logged_in: &'static str,
-    samples: usize,
-    missing: usize,
-    rate_hz: f64,
-    least: Option<f64>,
-    most: Option<f64>,
-    noise: Option<f64>,
-    step: Option<f64>,
-    cut_off_at: Vec<f64>,
-    gaps_s: Vec<[f64; 2]>,
-    doubts: Vec<String>,
 }
 
 /// Two logs that are the same data.
@@ -131,27 +113,6 @@ fn recording(map: &ImportMap, job: &Job) -> RecordingReport {
         rate_hz: rate(time),
         origin_unix_s: (imported.origin != 0.0).then_some(imported.origin),
         logs: logs.collect(),
-        channels: findings(imported, map).into_iter().map(channel).collect(),
-    }
-}
-
-fn channel(finding: Finding) -> ChannelReport {
-    let [least, most] = finding
-        .range
-        .map(|value| value.is_finite().then_some(value));
-    ChannelReport {
-        quantity: finding.quantity,
-        unit: finding.unit.symbol(),
-        logged_in: finding.log_unit.name,
-        samples: finding.samples,
-        missing: finding.missing,
-        rate_hz: finding.rate,
-        least,
-        most,
-        noise: finding.noise,
-        step: finding.quantum,
-        cut_off_at: finding.cut_off_at,
-        gaps_s: finding.gaps,
-        doubts: finding.doubts,
+        channels: findings(imported, map),
     }
 }

@@ -1,9 +1,9 @@
 //! Interpretation of a log, for people.
 
-use std::fmt::Write;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use crate::document::{Block, Cell, Column, Document, Section, Table};
 use crate::import::findings::{Finding, findings};
 use crate::import::rows::Stray;
 use crate::import::{ImportMap, Imported, LogNote, Remark};
@@ -28,72 +28,52 @@ pub(super) struct Copies {
 }
 
 /// Interpretation of a recording.
-pub(super) fn described(imported: &Imported, map: &ImportMap) -> String {
-    let mut text = String::new();
+pub(super) fn described(imported: &Imported, map: &ImportMap) -> Document<'static> {
     let time = imported.recording.time();
-    let mut files: Vec<String> = imported
-        .logs
-        .iter()
-        .map(|log| log.file.display().to_string())
-        .collect();
+    let [first, last] = [time[0], time[time.len() - 1]];
+    let logs = &imported.logs;
+    let mut files: Vec<String> = (logs.iter().map(|log| log.file.display().to_string())).collect();
     // Clocks of one log stand behind each other.
     files.dedup();
-    let _ = writeln!(
-        text,
-        "{}: {} samples from {:.3} to {:.3} s, {:.3} s at {} Hz",
-        files.join(" and "),
-        time.len(),
-        time[0],
-        time[time.len() - 1],
-        time[time.len() - 1] - time[0],
-        shown(rate(time))
-    );
     let found = findings(imported, map);
-    let wide = found.iter().map(|f| f.quantity.len()).max().unwrap_or(0);
-    for finding in &found {
-        let _ = writeln!(text, "  {}", line(finding, wide));
-        for doubt in &finding.doubts {
-            let _ = writeln!(text, "    doubtful: {doubt}");
-        }
-        for value in &finding.cut_off_at {
-            let _ = writeln!(
-                text,
-                "    stays at its extreme value {}: cut off there?",
-                shown(*value)
-            );
-        }
-    }
+    let columns = Column::list("channel | | #Hz | #least | #most | #noise | #steps");
+    let table = Table::new("", columns, found.iter().map(row).collect());
+    let mut notes: Vec<String> = found.iter().flat_map(remarks_on).collect();
     if imported.origin != 0.0 {
-        let _ = writeln!(
-            text,
-            "  its times count from {:.0} s since 1970",
-            imported.origin
-        );
+        let origin = imported.origin;
+        notes.push(format!("Times count from {origin:.0} s since 1970."));
     }
-    for log in &imported.logs {
+    for log in logs {
         let [used, there] = log.rows;
-        let of = match imported.logs.len() {
+        let of = match logs.len() {
             1 => String::new(),
             _ => format!(", of {}", log.quantities.join(", ")),
         };
-        let _ = writeln!(
-            text,
-            "  {}: {used} of {there} rows used{of}",
-            name(&log.file)
-        );
-        for remark in remarks(log) {
-            let _ = writeln!(text, "  {}: {remark}", name(&log.file));
-        }
+        let rows = format!("{used} of {there} rows used{of}");
+        let said = std::iter::once(rows).chain(remarks(log));
+        notes.extend(said.map(|said| format!("{}: {said}", name(&log.file))));
     }
     let several = parts(time).len();
     if several > 1 {
-        let _ = writeln!(
-            text,
-            "  gaps part it into {several} recordings: `idc diagnose` takes none with a gap longer than {} s, `--split` writes each part by itself",
-            shown(longest_pause(time))
-        );
+        let pause = shown(longest_pause(time));
+        notes.push(format!("Gaps part it into {several} recordings: `idc diagnose` takes none with a gap longer than {pause} s, `--split` writes each part by itself."));
     }
-    text + &gaps(&found)
+    notes.extend(gaps(&found));
+    let notes = notes.into_iter().map(Block::Paragraph);
+    Document {
+        title: format!(
+            "{}: {} samples from {first:.3} to {last:.3} s, {:.3} s at {} Hz",
+            files.join(" and "),
+            time.len(),
+            last - first,
+            shown(rate(time))
+        ),
+        sections: vec![
+            Section::new("Channels", vec![Block::Table(table)]),
+            Section::new("Notes", notes.collect()),
+        ],
+        ..Document::default()
+    }
 }
 
 /// Samples a second, in the median [Hz].
@@ -103,67 +83,72 @@ pub(super) fn rate(time: &[f64]) -> f64 {
 }
 
 /// The longest gaps of each log, which its channels share.
-fn gaps(found: &[Finding]) -> String {
-    let mut text = String::new();
+fn gaps(found: &[Finding]) -> Vec<String> {
     let mut reported: Vec<[f64; 2]> = Vec::new();
+    let mut said = Vec::new();
     for finding in found {
-        let longest = finding.gaps.iter().take(LISTED);
-        let fresh: Vec<[f64; 2]> = longest
-            .filter(|gap| !reported.contains(gap))
-            .copied()
-            .collect();
-        for [from, to] in fresh {
-            let _ = writeln!(
-                text,
-                "  gap of {:.3} s from {from:.3} s in {}{}",
-                to - from,
-                finding.quantity,
-                match finding.gaps.len() {
-                    0..=LISTED => String::new(),
-                    count => format!(", one of {count}"),
-                }
-            );
+        for &[from, to] in finding.gaps.iter().take(LISTED) {
+            if reported.contains(&[from, to]) {
+                continue;
+            }
             reported.push([from, to]);
+            let others = match finding.gaps.len() {
+                0..=LISTED => String::new(),
+                count => format!(", one of {count}"),
+            };
+            let (length, channel) = (to - from, &finding.quantity);
+            said.push(format!(
+                "Gap of {length:.3} s from {from:.3} s in {channel}{others}."
+            ));
         }
     }
-    text
+    said
 }
 
-/// A channel in a line.
-fn line(finding: &Finding, wide: usize) -> String {
-    if finding.missing == finding.samples {
-        return format!("{:<wide$}  empty", finding.quantity);
-    }
-    let [low, high] = finding.range.map(shown);
-    let unit = finding.unit.symbol();
-    let mut text = format!(
-        "{:wide$}  {:.6} Hz, {low} to {high} {unit}",
-        finding.quantity,
-        shown(finding.rate)
-    );
-    if finding.log_unit.factor != 1.0 || finding.log_unit.zero != 0.0 {
-        let _ = write!(text, " (logged in {})", finding.log_unit.name);
-    }
-    match (finding.noise, finding.quantum) {
-        (Some(noise), Some(step)) if noise < step => {
-            let _ = write!(text, ", noise below its steps");
-        }
-        (Some(noise), _) => {
-            let _ = write!(text, ", noise {} {unit}", shown(noise));
-        }
-        (None, _) => {}
-    }
-    if let Some(step) = finding.quantum {
-        let _ = write!(text, ", in steps of {} {unit}", shown(step));
-    }
-    if finding.missing > 0 {
-        let _ = write!(
-            text,
-            ", {} of {} samples empty",
-            finding.missing, finding.samples
-        );
-    }
-    text
+/// A channel in numbers.
+fn row(finding: &Finding) -> Vec<Cell> {
+    let is_empty = finding.missing == finding.samples;
+    let number = |value: Option<f64>| match value {
+        Some(value) if !is_empty => Cell::from(shown(value)),
+        _ => Cell::default(),
+    };
+    let noise = match (finding.noise, finding.quantum) {
+        (Some(noise), Some(step)) if noise < step => Cell::from("below a step"),
+        (noise, _) => number(noise),
+    };
+    vec![
+        finding.quantity.as_str().into(),
+        finding.unit.into(),
+        number(Some(finding.rate)),
+        number(Some(finding.least)),
+        number(Some(finding.most)),
+        noise,
+        number(finding.quantum),
+    ]
+}
+
+/// What else there is to know of a channel.
+fn remarks_on(finding: &Finding) -> Vec<String> {
+    let (missing, samples) = (finding.missing, finding.samples);
+    let empty = match missing {
+        0 => None,
+        _ if missing == samples => Some("empty".to_owned()),
+        _ => Some(format!("{missing} of {samples} samples empty")),
+    };
+    let logged = (finding.logged_in != finding.unit && missing < samples)
+        .then(|| format!("logged in {}", finding.logged_in));
+    let cut = finding.cut_off_at.iter();
+    let cut = cut.map(|value| {
+        format!(
+            "stays at its extreme value {}: cut off there?",
+            shown(*value)
+        )
+    });
+    let doubts = finding.doubts.iter();
+    let doubts = doubts.map(|doubt| format!("doubtful: {doubt}"));
+    let said = empty.into_iter().chain(logged).chain(doubts).chain(cut);
+    said.map(|said| format!("{}: {said}", finding.quantity))
+        .collect()
 }
 
 /// A number to four digits.

@@ -13,8 +13,6 @@ use crate::stats::{median, median_step};
 
 /// Mark of what is not known.
 const NOT_KNOWN: &str = "NOT KNOWN";
-/// Sum of the squares of the factors of a third difference: 1, 3, 3, 1.
-const OF_NOISE: f64 = 20.0;
 /// Median size of normal noise over its standard deviation.
 const MEDIAN_SIZE: f64 = 0.6745;
 
@@ -48,9 +46,7 @@ pub(super) fn text(
         text = text.replace("\ngravity", &format!("\nbase = {base:?}\ngravity"));
     }
     for (index, joint) in arm.chain.joints.iter().enumerate() {
-        let number = index + 1;
-        let logs = |signal: &str| seen.is_some_and(|s| s.has(&format!("joint_{number}_{signal}")));
-        let torque = !logs("current_a") && (logs("torque_n_m") || logs("force_n"));
+        let torque = logs_torque(seen, index + 1);
         text += &drive(&joint.name, joint.kind, torque);
     }
     text += "\n[load]                                 # declared load, fixed to the flange, in its axes; not felt by a wrench sensor\nmass_kg = 0.0\n# centre_m = [0.0, 0.0, 0.05]\n";
@@ -81,6 +77,12 @@ fn named_from(folder: &Path, path: &Path) -> String {
     let path = whole(path);
     let inside = path.strip_prefix(whole(folder)).ok().map(Path::to_owned);
     inside.unwrap_or(path).display().to_string()
+}
+
+/// Whether a log holds the torque of a joint's drive and not its current.
+fn logs_torque(seen: Option<&Seen>, number: usize) -> bool {
+    let has = |signal: &str| seen.is_some_and(|seen| seen.has(&format!("joint_{number}_{signal}")));
+    !has("current_a") && (has("torque_n_m") || has("force_n"))
 }
 
 fn head(arm: &Arm, urdf: &str, flange: &str) -> String {
@@ -135,7 +137,7 @@ fn wrench() -> String {
 fn sensors(arm: &Arm, seen: Option<&Seen>) -> String {
     let shown = |value: f64| format!("{value:.1e}").parse::<f64>().unwrap_or(value);
     let of = |column: &str| seen.and_then(|seen| seen.noise(column)).map(shown);
-    let from_log = "# from the log, by its differences from sample to sample";
+    let from_log = "# from the log, by how its samples scatter";
     let mut text = String::from(
         "\n[sensors]                              # one standard deviation of white noise\n",
     );
@@ -150,22 +152,28 @@ fn sensors(arm: &Arm, seen: Option<&Seen>) -> String {
     };
     line("rate_hz", seen.and_then(Seen::rate), 100.0);
     line("joint_rad", of("joint_1_rad"), 1e-5);
-    let list = |signal: &str, usual: f64| {
-        let all = (1..=arm.chain.len()).map(|number| of(&format!("joint_{number}_{signal}")));
+    let list = |signals: &[&str], usual: f64| {
+        let all = (1..=arm.chain.len()).map(|number| {
+            let mut all = signals.iter();
+            all.find_map(|signal| of(&format!("joint_{number}_{signal}")))
+        });
         let values: Vec<String> = all.map(|v| format!("{:?}", v.unwrap_or(usual))).collect();
         format!("[{}]", values.join(", "))
     };
-    let torque =
-        seen.is_some_and(|seen| !seen.has("joint_1_current_a") && (seen.has("joint_1_torque_n_m")));
     let said = match seen {
         Some(_) => from_log.to_owned(),
         None => format!("# {NOT_KNOWN}"),
     };
-    let (key, list) = match torque {
-        true => ("torque_n_m", list("torque_n_m", 0.5)),
-        false => ("current_a", list("current_a", 0.05)),
-    };
-    let _ = writeln!(text, "{key} = {list} {said}, one a drive");
+    let torques = (1..=arm.chain.len()).filter(|number| logs_torque(seen, *number));
+    let torques = torques.count();
+    if torques < arm.chain.len() {
+        let list = list(&["current_a"], 0.05);
+        let _ = writeln!(text, "current_a = {list} {said}, one a drive");
+    }
+    if torques > 0 {
+        let list = list(&["torque_n_m", "force_n"], 0.5);
+        let _ = writeln!(text, "torque_n_m = {list} {said}, one a drive");
+    }
     if let Some(noise) = of("joint_1_link_rad") {
         let _ = writeln!(text, "link_rad = {noise:?} {from_log}");
     }
@@ -218,14 +226,25 @@ impl Seen {
         (step > 0.0).then(|| (10.0 / step).round() / 10.0)
     }
 
-    /// Noise of a column by its third differences, which motion hardly has: robust against the few that it has.
+    /// Noise of a column by what each sample differs from a cubic through its four neighbours, whatever their stamps: motion hardly shows in it, and the
+    /// median is robust against where it does.
     fn noise(&self, column: &str) -> Option<f64> {
         let values = self.values(column)?;
-        let thirds = values
-            .windows(4)
-            .map(|v| (v[3] - 3.0 * v[2] + 3.0 * v[1] - v[0]).abs());
-        let size = median(thirds.filter(|third| third.is_finite()))?;
-        let noise = size / MEDIAN_SIZE / OF_NOISE.sqrt();
+        let samples = self.log.time.windows(5).zip(values.windows(5));
+        let sizes = samples.map(|(time, values)| {
+            let others = [0, 1, 3, 4];
+            let weight = |own: usize| -> f64 {
+                let rest = others.into_iter().filter(|other| *other != own);
+                rest.map(|other| (time[2] - time[other]) / (time[own] - time[other]))
+                    .product()
+            };
+            let weights = others.map(weight);
+            let pairs = weights.iter().zip(others);
+            let between: f64 = pairs.map(|(weight, other)| weight * values[other]).sum();
+            let spread = 1.0 + weights.iter().map(|weight| weight * weight).sum::<f64>();
+            (values[2] - between).abs() / spread.sqrt()
+        });
+        let noise = median(sizes.filter(|size| size.is_finite()))? / MEDIAN_SIZE;
         (noise > 0.0).then_some(noise)
     }
 }

@@ -5,10 +5,8 @@ use std::path::Path;
 use super::super::error::AppError;
 use super::table::{RUNS, columns};
 use crate::document::{
-    Block, Cell, Column, Document, Figure, Horizontal, Panel, Role, Section, Series, Stroke, Table,
-    Tone,
+    Block, Cell, Column, Document, Horizontal, Panel, Role, Section, Series, Stroke, Table, Tone,
 };
-use crate::figure::svg;
 use crate::metrics::Label;
 use crate::quantity::display_name::{display_name, number as plain};
 use crate::quantity::{UNKNOWN, column, number};
@@ -107,15 +105,9 @@ fn drivers(swept: &Swept) -> Section<'static> {
     let words = "Share of a number's variance over the runs that goes with one variable alone (first-order index), with its interval at 95 %; what is missing \
                  to 100 % is due to variables together, and to what is drawn at random. By chance: what the same values get at most, 95 times of 100, where they are shuffled \
                  among the runs; a share is named where its whole interval lies above that. Rank correlation: 1 where the number only grows with the variable, -1 where it only falls.";
-    let columns = vec![
-        Column::of_words("number"),
-        Column::of_words("driven by"),
-        Column::of_numbers("share [%]"),
-        Column::of_numbers("interval [%]"),
-        Column::of_words("interval drawn"),
-        Column::of_numbers("by chance [%]"),
-        Column::of_numbers("rank correlation"),
-    ];
+    let columns = Column::list(
+        "number | driven by | #share [%] | #interval [%] | interval drawn | #by chance [%] | #rank correlation",
+    );
     let block = match rows.is_empty() {
         true => Block::Paragraph(
             "No number differs between the runs, or there are too few runs to say.".to_owned(),
@@ -200,13 +192,7 @@ fn varied(swept: &Swept) -> Section<'static> {
         .to_vec()
     });
     let caption = format!("The points are {}.", swept.points);
-    let columns = vec![
-        Column::of_words("key"),
-        Column::of_numbers("values"),
-        Column::of_words("unit"),
-        Column::of_words("which"),
-        Column::of_numbers("different"),
-    ];
+    let columns = Column::list("key | #values | unit | which | #different");
     let table = Table::new(&caption, columns, rows.collect());
     Section::new("What was varied", vec![Block::Table(table)])
 }
@@ -223,22 +209,17 @@ fn pictures(swept: &Swept, table: &Path) -> Result<Option<Section<'static>>, App
         let Some(LongColumn::Numbers(values)) = read.remove(label.key) else {
             continue;
         };
-        let mut panels = vec![shares(&label, &values)];
+        blocks.push(Block::Heading(label.name.clone()));
         let driver = key.and_then(|key| Some((read.remove(&key)?, key)));
         if let Some((LongColumn::Numbers(x), key)) = driver {
-            panels.insert(0, cloud(&label, &key, &x, &values));
+            blocks.push(Block::Panel(cloud(&label, &key, &x, &values)));
         }
-        let figure = Figure {
-            title: String::new(),
-            panels,
-        };
-        blocks.push(Block::Heading(label.name.clone()));
-        blocks.push(Block::Picture(label.name.clone(), svg(&figure)?));
+        blocks.push(Block::Panel(shares(&label, &values)));
     }
     let words = "Above, each run over the variable that drives the number most; below, the share of the runs in which it is no larger.";
     Ok((!blocks.is_empty()).then(|| {
         blocks.insert(0, Block::Hint(words.to_owned()));
-        Section::new("Pictures", blocks)
+        Section::new("Charts", blocks)
     }))
 }
 
@@ -267,6 +248,7 @@ fn shares(label: &Label, values: &[f64]) -> Panel<'static> {
     let places = quantiles(values, &shares).unwrap_or_default();
     let shares: Vec<f64> = shares.iter().map(|share| 100.0 * share).collect();
     Panel {
+        title: "share of the runs at or below".to_owned(),
         vertical_label: "share of the runs [%]".to_owned(),
         horizontal: Horizontal::Quantity(named(label)),
         series: vec![Series::new(

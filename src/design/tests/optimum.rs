@@ -104,7 +104,8 @@ fn the_same_study_gives_the_same_bytes_on_any_number_of_threads() {
             .unwrap();
         pool.install(|| {
             let result = search(STUDY, &Surrogate).unwrap();
-            let svg = crate::design::front_svg(&result).unwrap().unwrap();
+            let front = crate::report::study_charts::front(&result).unwrap();
+            let svg = crate::figure::svg(&front).unwrap();
             (serde_json::to_string(&result).unwrap(), svg)
         })
     };

@@ -2,10 +2,11 @@
 
 use super::surrogate::{STUDY, Surrogate};
 use super::*;
-use crate::design::{StudyDocument, StudyResult, VariedKey, front_svg};
+use crate::design::{StudyDocument, StudyResult, VariedKey};
 use crate::document::{Style, text};
+use crate::figure::svg;
 use crate::recording::provenance::Provenance;
-use crate::report::{self, StudyPictures};
+use crate::report::{self, study_charts::front};
 
 /// The study as a terminal shows it.
 pub(super) fn shown(study: &Study, result: &StudyResult) -> String {
@@ -26,7 +27,7 @@ pub(super) fn shown(study: &Study, result: &StudyResult) -> String {
     // As it is read back.
     let file = serde_json::to_string(&document).unwrap();
     let document: StudyDocument = serde_json::from_str(&file).unwrap();
-    let report = report::study(&document, StudyPictures::default());
+    let report = report::study(&document);
     text(&report, Style::Plain)
 }
 
@@ -95,7 +96,7 @@ fn the_override_holds_the_chosen_design() {
 #[test]
 fn the_picture_names_its_axes_and_marks_both_designs() {
     let result = search(STUDY, &Surrogate).unwrap();
-    let svg = front_svg(&result).unwrap().unwrap();
+    let svg = svg(&front(&result).unwrap()).unwrap();
     for part in [
         "impact peak [N], worst of 2 scenarios",
         "coefficient of variation [%], mean of 2 scenarios",

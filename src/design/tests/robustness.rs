@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use super::*;
 use crate::design::robustness::Distribution;
 use crate::design::{Design, EvaluateError, Outcome, ScenarioOutcome};
+use crate::report::study_charts;
 
 struct Planted;
 
@@ -185,25 +186,28 @@ fn table_and_picture_tell_the_share_with_its_interval() {
         assert!(table.contains(part), "{part} in:\n{table}");
     }
     assert!(table.lines().all(|line| line.chars().count() <= 80));
-    let svg = crate::design::robustness_svg(&result).unwrap().unwrap();
+    let figure = study_charts::robustness(&result).unwrap();
+    let svg = crate::figure::svg(&figure).unwrap();
     for part in [
         "keep all limits",
         "impact peak [N]",
         "draws at or below [%]",
-        "beyond a limit",
+        "limit: at most 24 N",
     ] {
         assert!(svg.contains(part), "{part}");
     }
-    let dots = svg.matches("<circle").count();
-    // A dot for each draw in both panels, and two of the legend.
-    assert_eq!(dots, 2 * 50 + 2);
+    for panel in &figure.panels {
+        // A dot for each draw, beside the line of the chosen design.
+        let dots = panel.series[1..].iter().map(|of| of.values.len());
+        assert_eq!(dots.sum::<usize>(), 50);
+    }
     if let Some(path) = std::env::var_os("ROBUSTNESS_SVG") {
         std::fs::write(path, svg).unwrap();
     }
     let without = TEXT.split("[robustness]").next().unwrap();
     let result = search(without, &Planted).unwrap();
     assert!(result.robustness.is_none());
-    assert!(crate::design::robustness_svg(&result).unwrap().is_none());
+    assert!(study_charts::robustness(&result).is_none());
 }
 
 #[test]

@@ -166,14 +166,23 @@ impl UnknownGround {
             .iter()
             .map(|g| g.end_s)
             .fold(f64::NEG_INFINITY, f64::max);
-        let shown = |value: f64| significant(value, 3);
+        let when = match [first, last].map(|time| format!("{time:.2}")) {
+            [first, last] if first == last => format!("at {first} s"),
+            [first, last] => format!("in stretches from {first} to {last} s"),
+        };
         let said = |g: &&Self| {
+            // Over another variable it keeps its own unit.
+            let (own, over) = g.variable.split_once("_by_").unwrap_or((&g.variable, ""));
+            let (mut name, unit, factor) = display_name(own);
+            if !over.is_empty() {
+                name += &format!(" over {}", display_name(over).0);
+            }
+            let shown = |value: f64| significant(factor * value, 3);
+            let [low, high] = g.covered.map(shown);
+            let value = format!("{} {unit}", shown(g.value));
             format!(
-                "{} comes to {}, of which {} to {} were covered",
-                g.variable.replace("_by_", " over "),
-                shown(g.value),
-                shown(g.covered[0]),
-                shown(g.covered[1])
+                "{name} comes to {}, of which {low} to {high} were covered",
+                value.trim_end()
             )
         };
         let named: Vec<String> = variables.iter().take(MOST).map(said).collect();
@@ -183,7 +192,7 @@ impl UnknownGround {
         };
         (!all.is_empty()).then(|| {
             format!(
-                "{recording} leaves what the recordings fitted to covered, in stretches from {first:.2} to {last:.2} s, and the band of its prediction is wider there: {}{others}",
+                "{recording} leaves what the recordings fitted to covered, {when}, and the band of its prediction is wider there: {}{others}",
                 named.join("; ")
             )
         })

@@ -156,7 +156,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_place_stands_among_the_numbers_as_it_is() {
+    fn a_place_is_among_the_numbers_as_it_is() {
         let place = vec![("joint".to_owned(), Place::from(2))];
         let numbers = vec![("offset_n_m".to_owned(), Estimate::new(4.0, 3.5, 4.5))];
         let written = Parameters::placed(place, numbers);

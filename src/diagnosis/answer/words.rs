@@ -1,6 +1,5 @@
 //! Numbers, units and lines as people read them.
 
-pub use crate::document::wrapped;
 pub use crate::quantity::{capital, listed, percent};
 
 use crate::diagnosis::recordings::recorded::COLUMNS;

@@ -1,10 +1,23 @@
 //! A diagnosis of a recorded arm.
 
+use super::account::account;
+use super::answer::{alternatives, effects};
+use super::contact::touching;
+use super::effect::ArmEffect;
+use super::evidence::Evidence;
+use super::extent::{changes, stretches};
+use super::held::held_pushes;
 use super::input::ArmInput;
-use crate::diagnosis::answer::account::Account;
+use super::pushed::candidate;
+use super::search::search;
 use crate::diagnosis::answer::details::{DETAILS_SCHEMA, Details};
-use crate::diagnosis::answer::{Answer, SCHEMA, Verdict};
+use crate::diagnosis::answer::{Answer, Extent, SCHEMA, Verdict};
+use crate::diagnosis::difference::mismatch::Mismatch;
+use crate::effects::UNLISTED;
 use crate::recorded_arm::ArmParameters;
+
+/// What a channel leaves, over its noise, up to which it is explained [1].
+const EXPLAINED: f64 = 1.3;
 
 /// What was found.
 #[derive(Debug, Clone)]
@@ -15,29 +28,74 @@ pub struct ArmDiagnosis {
     pub fitted: ArmParameters,
 }
 
-/// Diagnoses a recorded arm.
+/// Diagnoses a recorded arm; `observer` gets the number of each stage of the search.
 #[must_use]
-pub fn diagnose(input: &ArmInput) -> ArmDiagnosis {
+pub fn diagnose(input: &ArmInput, observer: &mut dyn FnMut(usize)) -> ArmDiagnosis {
+    let touching = touching(input);
+    let evidence = Evidence::of(input, &touching);
+    let mut found = search(&evidence, observer);
+    for push in held_pushes(input, &found.best.fit.arm) {
+        let placed = candidate(push).applied(&mut found.best.fit.arm);
+        if let Some(added) = found.best.fit.arm.pushes.last_mut() {
+            *added = push;
+        }
+        found.best.effects.push(placed);
+    }
+    let effects = effects(input, &found);
+    let alternatives = alternatives(input, &found);
+    let verdict = if effects.is_empty() {
+        Verdict::NothingMissing
+    } else if effects.iter().any(|effect| effect.name == UNLISTED) {
+        Verdict::Unlisted
+    } else {
+        Verdict::Explained
+    };
+    let account = account(input, &found, &effects, &alternatives, &touching);
+    let fully = found.scales.iter().all(|scale| *scale <= EXPLAINED);
     let answer = Answer {
         schema: SCHEMA,
-        verdict: Verdict::NothingMissing,
-        explained: None,
-        effects: Vec::new(),
-        mismatch: Vec::new(),
+        verdict,
+        explained: Some(if fully { Extent::Fully } else { Extent::Partly }),
+        mismatch: mismatch(input, &found.best.fit.arm, &found.best.effects),
+        effects,
         seconds: 0.0,
-        alternatives: Vec::new(),
+        alternatives,
         notes: Vec::new(),
         details: Details {
             schema: DETAILS_SCHEMA,
-            account: Account {
-                headline: "nothing is missing".to_owned(),
-                sections: Vec::new(),
-            },
+            account,
             ..Details::default()
         },
     };
-    ArmDiagnosis {
-        answer,
-        fitted: input.nominal.clone(),
+    let mut fitted = found.best.fit.arm;
+    // Less than a stamp's last digit is no delay.
+    if !found
+        .best
+        .effects
+        .iter()
+        .any(|e| e.effect == ArmEffect::CurrentLate)
+    {
+        fitted.delay = input.nominal.delay;
     }
+    ArmDiagnosis { answer, fitted }
+}
+
+/// Where the effects act; nowhere without any.
+fn mismatch(
+    input: &ArmInput,
+    arm: &ArmParameters,
+    effects: &[super::effect::Candidate],
+) -> Vec<Mismatch> {
+    if effects.is_empty() {
+        return Vec::new();
+    }
+    stretches(input, &changes(input, arm, effects))
+        .iter()
+        .map(|stretch| Mismatch {
+            recording: input.recordings[stretch.recording].name.clone(),
+            channel: input.columns[stretch.channel].clone(),
+            start_s: stretch.start,
+            end_s: stretch.end,
+        })
+        .collect()
 }

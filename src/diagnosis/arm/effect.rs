@@ -185,8 +185,6 @@ pub fn candidates(input: &ArmInput) -> Vec<Candidate> {
 
 fn of_joint(input: &ArmInput, joint: usize, all: &mut Vec<Candidate>) {
     use Quantity as Q;
-    let drive = &input.nominal.drives[joint];
-    let one = |effect, quantity, bounds| Candidate::linear(effect, &[(quantity, bounds)]);
     let friction = [(Q::Coulomb(joint), POSITIVE), (Q::Viscous(joint), POSITIVE)];
     all.push(Candidate::linear(
         ArmEffect::JointFriction(joint),
@@ -203,6 +201,15 @@ fn of_joint(input: &ArmInput, joint: usize, all: &mut Vec<Candidate>) {
                 .refined(&[(Q::StribeckVelocity(joint), STRIBECK)]),
         );
     }
+    of_drive(input, joint, all);
+    of_gear(input, joint, all);
+}
+
+/// Effects of a joint's drive beside its friction.
+fn of_drive(input: &ArmInput, joint: usize, all: &mut Vec<Candidate>) {
+    use Quantity as Q;
+    let drive = &input.nominal.drives[joint];
+    let one = |effect, quantity, bounds| Candidate::linear(effect, &[(quantity, bounds)]);
     all.push(one(
         ArmEffect::LoadFriction(joint),
         Q::LoadFriction(joint),
@@ -233,6 +240,12 @@ fn of_joint(input: &ArmInput, joint: usize, all: &mut Vec<Candidate>) {
             .refined(&[(Q::WarmTime(joint), [0.3, 600.0])]),
         );
     }
+}
+
+/// Effects of a joint's gear, encoder and hoses.
+fn of_gear(input: &ArmInput, joint: usize, all: &mut Vec<Candidate>) {
+    use Quantity as Q;
+    let one = |effect, quantity, bounds| Candidate::linear(effect, &[(quantity, bounds)]);
     if input.channels.contains(&Channel::Link(joint)) {
         all.push(one(
             ArmEffect::CompliantJoint(joint),

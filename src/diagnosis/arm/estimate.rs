@@ -4,17 +4,23 @@
 //! var f = grad f^T H^-1 grad f s^2
 //! ```
 //!
-//! H curvature of half the cost, with what is known of the tolerated numbers; s what the friction of a real joint leaves beyond its textbook form.
+//! H curvature of half the cost, with what is known of the tolerated numbers; s a fifth more than the noise alone. What a law of a textbook leaves of a real
+//! joint, gear or hose is added: its size is right to [`FORM`] (Armstrong-Helouvry et al., Automatica 30 (1994), 1083: friction differs that much from one
+//! law to another on the same data).
 
 use nalgebra::{DMatrix, DVector};
 
 use super::effect::{ArmEffect, Candidate};
 use super::fit::Fit;
-use crate::recorded_arm::wrench::CHANNELS;
 use crate::recorded_arm::{ArmParameters, Quantity};
 
 /// Half-width of an interval over the standard deviation of noise alone [1]: 1.96, and a fifth for the model.
 const HALF_WIDTH: f64 = 2.4;
+
+/// Half-width of what the form of a law leaves open, as a share of its size [1].
+const FORM: f64 = 0.04;
+/// The same of the beginning and end of a push, whose course is not known [s].
+const COURSE: f64 = 0.04;
 
 /// A number with its interval.
 #[derive(Debug, Clone, PartialEq)]
@@ -51,13 +57,36 @@ pub fn numbers(fit: &Fit, covariance: &DMatrix<f64>, effect: &Candidate) -> Vec<
                 .collect();
             let gradient = DVector::from_vec(gradient);
             let variance = gradient.dot(&(covariance * &gradient));
+            let found = value(&fit.arm);
+            let form = match (is_law_of_textbook(effect.effect), key) {
+                (_, "start_s" | "end_s") => COURSE,
+                (true, "cycles_per_turn" | "rest_rad") | (false, _) => 0.0,
+                (true, _) => FORM * found.abs(),
+            };
             Number {
                 key,
-                value: value(&fit.arm),
-                half: HALF_WIDTH * variance.max(0.0).sqrt(),
+                value: found,
+                half: (HALF_WIDTH * variance.max(0.0).sqrt()).hypot(form),
             }
         })
         .collect()
+}
+
+/// Whether an effect is a law of a textbook: not a mass, a gain or a number of a sensor.
+fn is_law_of_textbook(effect: ArmEffect) -> bool {
+    matches!(
+        effect,
+        ArmEffect::JointFriction(_)
+            | ArmEffect::Stribeck(_)
+            | ArmEffect::LoadFriction(_)
+            | ArmEffect::GearRipple(_)
+            | ArmEffect::CompliantJoint(_)
+            | ArmEffect::WarmUp(_)
+            | ArmEffect::DressPack(_)
+            | ArmEffect::Push(_)
+            | ArmEffect::Crosstalk(..)
+            | ArmEffect::WrenchDrift(_)
+    )
 }
 
 /// Covariance of a fit's numbers.
@@ -90,15 +119,7 @@ fn reported(candidate: &Candidate) -> Vec<Reported> {
             plain("coulomb_n_m", Q::Coulomb(j)),
             plain("viscous_n_m_s_per_rad", Q::Viscous(j)),
         ],
-        ArmEffect::Stribeck(j) => vec![
-            plain("coulomb_n_m", Q::Coulomb(j)),
-            plain("viscous_n_m_s_per_rad", Q::Viscous(j)),
-            (
-                "static_n_m",
-                Box::new(move |arm| arm.drives[j].coulomb + arm.drives[j].static_excess),
-            ),
-            plain("stribeck_velocity_rad_per_s", Q::StribeckVelocity(j)),
-        ],
+        ArmEffect::Stribeck(j) => of_stribeck(j),
         ArmEffect::LoadFriction(j) => vec![plain("friction_per_load", Q::LoadFriction(j))],
         ArmEffect::MotorInertia(j) => vec![plain("inertia_kg_m2", Q::MotorInertia(j))],
         ArmEffect::DriveGain(j) => vec![(
@@ -122,17 +143,7 @@ fn reported(candidate: &Candidate) -> Vec<Reported> {
             plain("fraction", Q::WarmFraction(j)),
             plain("time_constant_s", Q::WarmTime(j)),
         ],
-        ArmEffect::Payload => {
-            let centre = |axis: usize| -> Box<dyn Fn(&ArmParameters) -> f64> {
-                Box::new(move |arm| arm.payload.centre()[axis])
-            };
-            vec![
-                plain("mass_kg", Q::PayloadMass),
-                ("centre_x_m", centre(0)),
-                ("centre_y_m", centre(1)),
-                ("centre_z_m", centre(2)),
-            ]
-        }
+        ArmEffect::Payload => of_payload(),
         ArmEffect::LinkMass(link) => vec![plain("mass_kg", Q::LinkMass(link))],
         ArmEffect::BaseTilt => vec![
             plain("roll_rad", Q::Tilt(0)),
@@ -165,6 +176,40 @@ fn reported(candidate: &Candidate) -> Vec<Reported> {
         ArmEffect::WrenchDrift(k) => vec![plain("n_per_s", Q::Drift(k))],
         ArmEffect::CurrentLate => vec![plain("delay_s", Q::Delay)],
     }
+}
+
+fn of_stribeck(j: usize) -> Vec<Reported> {
+    use Quantity as Q;
+    vec![
+        ("coulomb_n_m", Box::new(move |arm| Q::Coulomb(j).value(arm))),
+        (
+            "viscous_n_m_s_per_rad",
+            Box::new(move |arm| Q::Viscous(j).value(arm)),
+        ),
+        (
+            "static_n_m",
+            Box::new(move |arm| arm.drives[j].coulomb + arm.drives[j].static_excess),
+        ),
+        (
+            "stribeck_velocity_rad_per_s",
+            Box::new(move |arm| Q::StribeckVelocity(j).value(arm)),
+        ),
+    ]
+}
+
+fn of_payload() -> Vec<Reported> {
+    let centre = |axis: usize| -> Box<dyn Fn(&ArmParameters) -> f64> {
+        Box::new(move |arm| arm.payload.centre()[axis])
+    };
+    vec![
+        (
+            "mass_kg",
+            Box::new(|arm: &ArmParameters| Quantity::PayloadMass.value(arm)),
+        ),
+        ("centre_x_m", centre(0)),
+        ("centre_y_m", centre(1)),
+        ("centre_z_m", centre(2)),
+    ]
 }
 
 const ZEROS: [&str; 6] = [
@@ -206,10 +251,4 @@ pub fn turned(fit: &Fit, covariance: &DMatrix<f64>, declared: f64) -> Number {
         value: found - turn * (found / turn).round(),
         half: HALF_WIDTH * variance.max(0.0).sqrt(),
     }
-}
-
-/// Name of a channel of the wrench.
-#[must_use]
-pub fn wrench_channel(k: usize) -> &'static str {
-    CHANNELS[k]
 }

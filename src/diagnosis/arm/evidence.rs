@@ -13,7 +13,7 @@ use crate::recorded_arm::simulate::{Channel, RigidCourse, moments, readings};
 use crate::recorded_arm::{ArmParameters, Quantity};
 
 /// Speed below which a joint stands still, as a share of the largest that its description allows [1].
-const STANDS: f64 = 2e-3;
+const STANDSTILL: f64 = 1e-2;
 /// Time below that speed from which a joint has come to rest [s].
 const RESTS: f64 = 0.1;
 /// Lengths of bristles after which friction has forgotten how the joint came to rest [1].
@@ -292,7 +292,7 @@ fn is_moved(quantity: Quantity, channel: Channel, arm: &ArmParameters) -> bool {
 #[must_use]
 pub fn slides(input: &ArmInput, recording: usize, joint: usize) -> Vec<bool> {
     let motion = &input.recordings[recording].motion;
-    let still = STANDS * input.nominal.chain.joints[joint].velocity.clamp(0.05, 10.0);
+    let still = STANDSTILL * input.nominal.chain.joints[joint].velocity.clamp(0.5, 3.0);
     let length = input.nominal.drives[joint].bristle_length;
     let (position, speed, time) = (&motion.position[joint], &motion.speed[joint], &motion.time);
     // It counts as come to rest at the start, and whenever it has stood for a time.

@@ -125,20 +125,3 @@ pub fn stretches(input: &ArmInput, changes: &[Vec<Vec<f64>>]) -> Vec<Stretch> {
     }
     found
 }
-
-/// Name of a channel's column.
-#[must_use]
-pub fn column(input: &ArmInput, channel: Channel) -> String {
-    match channel {
-        Channel::Drive(joint) => {
-            let current = input.nominal.drives[joint].logs_current;
-            let unit = if current { "current_a" } else { "torque_n_m" };
-            format!("joint_{}_{unit}", joint + 1)
-        }
-        Channel::Link(joint) => format!("joint_{}_link_rad", joint + 1),
-        Channel::Wrench(k) => {
-            let unit = if k < 3 { "n" } else { "n_m" };
-            format!("wrench_{}_{unit}", crate::recorded_arm::wrench::CHANNELS[k])
-        }
-    }
-}

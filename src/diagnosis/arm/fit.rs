@@ -13,8 +13,8 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use super::evidence::{Column, Course, Evidence};
-use super::input::Tolerated;
 use super::quadratic::least_within;
+use crate::recorded_arm::Tolerated;
 use crate::recorded_arm::{ArmParameters, Quantity};
 
 /// A number that a fit moves.
@@ -252,7 +252,9 @@ pub fn is_curved(quantity: Quantity) -> bool {
     )
 }
 
-fn residuals_of(evidence: &Evidence, course: &Course) -> Column {
+/// What a course leaves of the measured values, over the noise.
+#[must_use]
+pub fn residuals_of(evidence: &Evidence, course: &Course) -> Column {
     let all: Vec<usize> = (0..evidence.rows.len()).collect();
     let mut values = evidence.values(course, &all);
     for (values, measured) in values.iter_mut().zip(&evidence.measured) {

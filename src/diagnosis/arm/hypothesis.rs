@@ -7,10 +7,10 @@ use nalgebra::{DMatrix, DVector};
 use super::effect::{ArmEffect, Candidate};
 use super::evidence::{Column, Evidence};
 use super::extent::without;
-use super::fit::{Columns, Fit, Parameter, fit, is_curved, products, weighed};
-use super::input::{ArmInput, Tolerated};
+use super::fit::{Columns, Fit, Parameter, fit, is_curved, products, residuals_of, weighed};
+use super::input::ArmInput;
 use super::quadratic::least_within;
-use crate::recorded_arm::{ArmParameters, Quantity};
+use crate::recorded_arm::{ArmParameters, Quantity, Tolerated};
 
 /// Length of bristles within which they are looked for, and what is known of it [rad].
 const BRISTLES: ([f64; 2], [f64; 2]) = ([1e-6, 2e-3], [2e-4, 2e-4]);
@@ -234,17 +234,7 @@ impl Base {
         // Where a candidate begins elsewhere than at nothing, its start is a part of the step.
         let moved = (candidate.presets.iter())
             .any(|(q, v)| candidate.screened.contains(q) && v.abs() > 1e-2);
-        let residuals = if moved {
-            let mut left = evidence.values(&course, &(0..evidence.rows.len()).collect::<Vec<_>>());
-            for (value, measured) in left.iter_mut().zip(&evidence.measured) {
-                for (value, measured) in value.iter_mut().zip(measured) {
-                    *value = measured - *value;
-                }
-            }
-            Some(left)
-        } else {
-            None
-        };
+        let residuals = moved.then(|| residuals_of(evidence, &course));
         let start = residuals.as_ref().unwrap_or(&fit.residuals);
         if moved {
             for (i, column) in self.columns.iter().enumerate() {

@@ -1,9 +1,8 @@
 //! What a diagnosis of a recorded arm is made of.
 
-use crate::recorded_arm::ArmParameters;
-pub use crate::recorded_arm::Tolerated;
 use crate::recorded_arm::motion::Motion;
 use crate::recorded_arm::simulate::Channel;
+use crate::recorded_arm::{ArmParameters, Tolerated};
 
 /// A recording of an arm.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,11 +1,15 @@
 //! A recorded arm: what physics its log contains that its description leaves out.
 
+pub mod account;
+pub mod answer;
+pub mod contact;
 pub mod diagnosed;
 pub mod effect;
 pub mod estimate;
 pub mod evidence;
 pub mod extent;
 pub mod fit;
+pub mod held;
 pub mod hypothesis;
 pub mod input;
 pub mod laws;
@@ -14,3 +18,6 @@ pub mod quadratic;
 pub mod search;
 
 pub use diagnosed::{ArmDiagnosis, diagnose};
+
+#[cfg(test)]
+mod tests;

@@ -17,14 +17,15 @@ use super::fit::{Fit, Parameter};
 use crate::arm::JointKind;
 use crate::arm::chain::MAX_JOINTS;
 use crate::arm::kinematics::link_poses;
-use crate::recorded_arm::Quantity;
+use crate::recorded_arm::motion::Motion;
 use crate::recorded_arm::push::Push;
 use crate::recorded_arm::simulate::Channel;
+use crate::recorded_arm::{ArmParameters, Quantity};
 
 /// Length of a window [s].
 const WINDOW: f64 = 0.1;
 /// Gain of a window from which something pushes [1].
-const STANDS_OUT: f64 = 25.0;
+const SIGNIFICANT: f64 = 25.0;
 /// Time over which a push may go unseen [s].
 const BRIDGED: f64 = 0.35;
 /// Shares of the duration over which a push grows.
@@ -87,7 +88,9 @@ pub fn pushes(evidence: &Evidence, fit: &Fit, scales: &[f64]) -> Vec<Candidate> 
     found.iter().take(MOST).flat_map(shaped).collect()
 }
 
-fn candidate(push: Push) -> Candidate {
+/// A push as what may be missing.
+#[must_use]
+pub fn candidate(push: Push) -> Candidate {
     let free = |quantity, bounds| Parameter::free(quantity, bounds);
     let forces = [0, 1, 2].map(|axis| free(Quantity::PushForce(0, axis), [-1e4, 1e4]));
     let around = |time: f64| [time - 1.0, time + 1.0];
@@ -124,14 +127,14 @@ fn of_recording(
     let mut found = Vec::new();
     let mut w = 0;
     while w < windows.len() {
-        if windows[w].gain() < STANDS_OUT {
+        if windows[w].gain() < SIGNIFICANT {
             w += 1;
             continue;
         }
         let (start, mut last) = (w, w);
         let mut next = w + 1;
         while next < windows.len() && next <= last + bridged {
-            if windows[next].gain() >= STANDS_OUT {
+            if windows[next].gain() >= SIGNIFICANT {
                 last = next;
             }
             next += 1;
@@ -156,30 +159,34 @@ fn of_recording(
     found
 }
 
+/// Torque of each joint for a unit force at the flange's origin, by its components [N m/N].
+#[must_use]
+pub fn levers(arm: &ArmParameters, motion: &Motion, sample: usize) -> [DVec3; MAX_JOINTS] {
+    let chain = &arm.chain;
+    let joints = chain.len();
+    let q: Vec<f64> = motion.position.iter().map(|q| q[sample]).collect();
+    let mut poses = [DPose3::IDENTITY; MAX_JOINTS];
+    link_poses(chain, DPose3::IDENTITY, &q, &mut poses[..joints]);
+    let flange = (poses[joints - 1] * chain.tip_from_last).translation;
+    let mut lever = [DVec3::ZERO; MAX_JOINTS];
+    for (j, joint) in chain.joints.iter().enumerate() {
+        let axis = poses[j].rotation * joint.axis;
+        lever[j] = match joint.kind {
+            JointKind::Revolute => axis.cross(flange - poses[j].translation),
+            JointKind::Prismatic => axis,
+        };
+    }
+    lever
+}
+
 /// Normal equations of all windows of a recording.
 fn windows(evidence: &Evidence, fit: &Fit, scales: &[f64], recording: usize) -> Vec<Window> {
     let input = evidence.input;
     let motion = &input.recordings[recording].motion;
-    let joints = input.nominal.joints();
     let span = motion.time.last().copied().unwrap_or(0.0) - motion.time[0];
     let mut windows = vec![Window::EMPTY; (span / WINDOW) as usize + 1];
     let levers: Vec<[DVec3; MAX_JOINTS]> = (0..motion.len())
-        .map(|sample| {
-            let q: Vec<f64> = motion.position.iter().map(|q| q[sample]).collect();
-            let mut poses = [DPose3::IDENTITY; MAX_JOINTS];
-            let chain = &fit.arm.chain;
-            link_poses(chain, DPose3::IDENTITY, &q, &mut poses[..joints]);
-            let flange = (poses[joints - 1] * chain.tip_from_last).translation;
-            let mut lever = [DVec3::ZERO; MAX_JOINTS];
-            for (j, joint) in chain.joints.iter().enumerate() {
-                let axis = poses[j].rotation * joint.axis;
-                lever[j] = match joint.kind {
-                    JointKind::Revolute => axis.cross(flange - poses[j].translation),
-                    JointKind::Prismatic => axis,
-                };
-            }
-            lever
-        })
+        .map(|sample| levers(&fit.arm, motion, sample))
         .collect();
     for (c, channel) in input.channels.iter().enumerate() {
         let Channel::Drive(joint) = channel else {

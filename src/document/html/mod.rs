@@ -128,8 +128,6 @@ fn block(block_of: &Block<'_>, budget: &Budget) -> Markup {
             Block::Strip(of) if of.rows.iter().all(|(_, spans)| spans.is_empty()) => p.hint { "At no time." },
             Block::Strip(of) => (strip(of)),
             Block::Lines(text) => pre { (text) },
-            // Drawn by src/figure, whose texts are escaped.
-            Block::Picture(words, svg) => div.picture role="img" aria-label=(words) { (PreEscaped(svg)) },
             Block::Sketches(all) => (sketches(all)),
             Block::InSpace(drawing, instead) => div.space {
                 (sketches(instead))
@@ -206,6 +204,7 @@ fn table(table: &Table) -> Markup {
                     Cell::Number(number) => td class=[numeric(index)] data-key=[key(cell)] { (number.with_unit()) },
                     Cell::Verdict(text, good) => td class={ @if *good { "good " } @else { "bad " } (numeric(index).unwrap_or_default()) } { (text) },
                     Cell::Hash(text) => td.hash { (text) },
+                    Cell::Link(text, target) => td { a href=(target) { (text) } },
                     Cell::Interval(ends) => td { (interval(*ends)) },
                 }
             } } } }

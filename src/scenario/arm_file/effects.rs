@@ -59,28 +59,42 @@ impl Filled for EffectTables {
         let mut properties = serde_json::Map::new();
         properties.insert(
             NAME.to_owned(),
-            json!({ "enum": ARM_EFFECTS.map(|e| e.name) }),
+            json!({ "enum": ARM_EFFECTS.map(|e| e.name), "description": "An effect of the vocabulary. Required." }),
         );
         for effect in &ARM_EFFECTS {
             for place in effect.places {
                 let form = match place {
-                    Place::Joint => json!({ "type": "integer", "minimum": 1 }),
-                    _ => json!({ "type": "string" }),
+                    Place::Joint => {
+                        json!({ "type": "integer", "minimum": 1, "description": "The joint, as columns count them." })
+                    }
+                    other => {
+                        json!({ "type": "string", "description": format!("The {} in which, or of which, it is.", other.key()) })
+                    }
                 };
                 properties.insert(place.key().to_owned(), form);
             }
             for key in effect.numbers.iter().chain(further(effect.name)) {
-                let form = json!({ "anyOf": [number, { "type": "object" }] });
+                let unit = Unit::of_key(key).symbol;
+                let unit = if unit.is_empty() { "1" } else { unit };
+                let about = format!("Number of {} [{unit}].", having(key).join(", "));
+                let form = json!({ "anyOf": [number, { "type": "object" }], "description": about });
                 properties.insert((*key).to_owned(), form);
             }
         }
-        json!({ "type": "array", "items": {
+        json!({ "type": "array", "description": "Tables [[effect]]: physics beyond the nominal arm.", "items": {
             "type": "object",
             "properties": properties,
             "required": [NAME],
             "additionalProperties": false,
         } })
     }
+}
+
+/// Effects that have a number of this key.
+fn having(key: &str) -> Vec<&'static str> {
+    let all = ARM_EFFECTS.iter();
+    let own = all.filter(|e| e.numbers.contains(&key) || further(e.name).contains(&key));
+    own.map(|effect| effect.name).collect()
 }
 
 /// Keys that an effect may have beyond its numbers in the vocabulary.
@@ -156,8 +170,10 @@ fn named(
 ) -> Result<&'static ArmEffectName, ScenarioError> {
     let all: Vec<&str> = ARM_EFFECTS.iter().map(|effect| effect.name).collect();
     match table.get(NAME) {
-        Some(EffectValue::Text(name)) => arm_effect(name)
-            .ok_or_else(|| section.refuse(NAME, format!("{name:?}"), nearest(name, &all))),
+        Some(EffectValue::Text(name)) => arm_effect(name).ok_or_else(|| {
+            let expected = format!("an effect of the vocabulary; {}", nearest(name, &all));
+            section.refuse(NAME, format!("{name:?}"), expected)
+        }),
         Some(other) => Err(section.refuse(NAME, other.to_string(), "a text".to_owned())),
         None => Err(section.missing(NAME, &format!("one of {}", all.join(", ")))),
     }

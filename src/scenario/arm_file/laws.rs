@@ -102,7 +102,8 @@ fn among<T: Copy>(
     let found = all.iter().find(|(name, _)| *name == word);
     found.map(|(_, one)| *one).ok_or_else(|| {
         let names: Vec<&str> = all.iter().map(|(name, _)| *name).collect();
-        section.refuse(key, format!("{word:?}"), nearest(word, &names))
+        let expected = format!("one of the words for it; {}", nearest(word, &names));
+        section.refuse(key, format!("{word:?}"), expected)
     })
 }
 

@@ -243,8 +243,8 @@ fn what_was_found_reads_back() {
     let back = improved_arm_text(&read, &arm.nominal, &recordings);
     let back = from_text(elsewhere, &back).unwrap();
     near(&back.arm(&recordings), &arm.nominal);
-    // Tolerances stay about the new values.
-    assert_eq!(read.tolerated.len(), arm.tolerated.len());
+    // Tolerances stay about the new values, but for ends that no longer hold theirs: the rail's friction.
+    assert_eq!(read.tolerated.len() + 1, arm.tolerated.len());
 }
 
 #[test]
@@ -280,7 +280,7 @@ fn what_cannot_be_is_refused_by_its_key() {
         (
             "value = 10.0, tolerance = 0.1",
             "value = 10.0, tolerance = 1.5",
-            "0 to less than 1",
+            "0 to 1",
         ),
         (
             "value = 10.0, tolerance = 0.1",

@@ -11,7 +11,7 @@ use std::fmt;
 
 use serde::Deserialize;
 use serde::de::value::{F64Deserializer, SeqAccessDeserializer};
-use serde::de::{Deserializer, Error, MapAccess, SeqAccess, Visitor};
+use serde::de::{DeserializeSeed, Deserializer, Error, MapAccess, SeqAccess, Visitor};
 use serde_json::{Value, json};
 
 use crate::keys::check::{Section, plain};
@@ -115,16 +115,16 @@ impl<'de, T: Content> Visitor<'de> for AnyForm<T> {
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
         let (mut value, mut relative, mut absolute) = (None, None, None);
         let mut ends = [None, None];
-        while let Some(key) = map.next_key::<String>()? {
+        while let Some(key) = map.next_key_seed(FieldKey)? {
             match key.as_str() {
                 "value" => value = Some(map.next_value()?),
                 "low" => ends[0] = Some(map.next_value()?),
                 "high" => ends[1] = Some(map.next_value()?),
                 "tolerance" => relative = Some(map.next_value()?),
-                other => match other.strip_prefix("tolerance_") {
-                    Some(unit) => absolute = Some((unit.to_owned(), map.next_value()?)),
-                    None => return Err(A::Error::unknown_field(other, &FIELDS)),
-                },
+                other => {
+                    let unit = other.trim_start_matches(ABSOLUTE).to_owned();
+                    absolute = Some((unit, map.next_value()?));
+                }
             }
         }
         Ok(Toleranced {
@@ -138,6 +138,34 @@ impl<'de, T: Content> Visitor<'de> for AnyForm<T> {
 
 /// Keys of such a value's table; one more is `tolerance_` with the unit of its key.
 const FIELDS: [&str; 4] = ["value", "tolerance", "low", "high"];
+/// Begin of the key of a tolerance in the unit of its value.
+const ABSOLUTE: &str = "tolerance_";
+
+/// Reads the name of a key, so that one that is unknown is refused in its place.
+struct FieldKey;
+
+impl<'de> DeserializeSeed<'de> for FieldKey {
+    type Value = String;
+
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<String, D::Error> {
+        deserializer.deserialize_identifier(self)
+    }
+}
+
+impl Visitor<'_> for FieldKey {
+    type Value = String;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("a key")
+    }
+
+    fn visit_str<E: Error>(self, name: &str) -> Result<String, E> {
+        if FIELDS.contains(&name) || name.starts_with(ABSOLUTE) {
+            return Ok(name.to_owned());
+        }
+        Err(E::unknown_field(name, &FIELDS))
+    }
+}
 
 keys! {
     /// A value with what is known of it.

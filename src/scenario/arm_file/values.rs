@@ -4,8 +4,10 @@ use glam::DVec3;
 
 use super::keys::{ArmFileKeys, DriveKeys, LinkKeys, LoadKeys, SensorsKeys, WrenchKeys};
 use super::names::Names;
+use super::noise::ArmNoise;
+use super::order::column_order;
 use super::toleranced::{Content, Toleranced};
-use super::{ArmNoise, column_order};
+
 use crate::arm::{ArmOptions, load_arm};
 use crate::keys::check::{Section, plain};
 use crate::keys::document::Document;

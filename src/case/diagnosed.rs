@@ -1,0 +1,25 @@
+//! What a diagnosis of a case comes to.
+
+use crate::diagnosis::answer::Answer;
+use crate::diagnosis::answer::finding::Diagnosis;
+use crate::diagnosis::difference::comparison::Comparison;
+use crate::plant::PlantParameters;
+
+/// Name of the improved model's file.
+pub const IMPROVED: &str = "improved.toml";
+
+/// Result of a diagnosis, with the files that it comes to.
+pub struct Diagnosed {
+    /// The finding.
+    pub answer: Answer,
+    /// The improved model as a file.
+    pub improved: String,
+    /// The improved model's prediction of the recording that was kept back, as comma-separated values.
+    pub prediction: Option<String>,
+    /// Recordings beside models.
+    pub comparison: Comparison,
+    /// The search with all its explanations; none of a contact flange or an arm.
+    pub diagnosis: Option<Diagnosis>,
+    /// The improved model; none of a contact flange or an arm.
+    pub plant: Option<PlantParameters>,
+}

@@ -1,0 +1,203 @@
+//! Arms whose friction is another law than the model's: what is planted in them is found, and in one without a fault nothing.
+
+use super::contact::touching;
+use super::diagnosed::diagnose;
+use super::held::held_pushes;
+use super::input::{ArmInput, ArmRecording};
+use crate::arm::test_chains::random_chain;
+use crate::diagnosis::answer::{Answer, Verdict};
+use crate::recorded_arm::motion::Motion;
+use crate::recorded_arm::simulate::{Channel, RigidCourse, all_bristles, readings};
+use crate::recorded_arm::{ArmParameters, Drive, PointMass, Quantity, Tolerated};
+use glam::DVec3;
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use rand_distr::StandardNormal;
+
+const JOINTS: usize = 3;
+const COULOMB: f64 = 3.0;
+const VISCOUS: f64 = 5.0;
+const NOISE: f64 = 0.03;
+
+fn nominal() -> ArmParameters {
+    let mut chain = random_chain(4, JOINTS);
+    for joint in &mut chain.joints {
+        joint.velocity = 2.0;
+    }
+    let drive = Drive {
+        inverse_gain: 0.1,
+        logs_current: true,
+        motor_inertia: 1.0,
+        coulomb: COULOMB,
+        viscous: VISCOUS,
+        ..Drive::default()
+    };
+    ArmParameters {
+        chain,
+        gravity: DVec3::new(0.0, 0.0, -9.81),
+        tilt: [0.0; 2],
+        drives: vec![drive; JOINTS],
+        load: PointMass::default(),
+        payload: PointMass::default(),
+        wrench: None,
+        delay: 0.0,
+        pushes: Vec::new(),
+        laws: Vec::new(),
+    }
+}
+
+fn motion(recording: usize, held: bool) -> Motion {
+    let time: Vec<f64> = (0..2000).map(|i| 0.01 * f64::from(i)).collect();
+    let course = |joint: usize, t: f64| {
+        if held {
+            return 0.3 * joint as f64 - 0.2;
+        }
+        let rate = 0.7 + 0.23 * joint as f64 + 0.31 * recording as f64;
+        0.8 * (rate * t).sin() + 0.3 * (2.3 * rate * t + joint as f64).cos()
+    };
+    let positions: Vec<Vec<f64>> = (0..JOINTS)
+        .map(|joint| time.iter().map(|t| course(joint, *t)).collect())
+        .collect();
+    Motion::of_positions(recording, &time, &positions, 25.0)
+}
+
+/// Currents of an arm whose dry friction is a hyperbolic tangent of the speed.
+fn recorded(truth: &ArmParameters, motion: Motion, random: &mut ChaCha8Rng) -> ArmRecording {
+    let mut smooth = truth.clone();
+    smooth
+        .drives
+        .iter_mut()
+        .for_each(|drive| drive.coulomb = 0.0);
+    let channels: Vec<Channel> = (0..JOINTS).map(Channel::Drive).collect();
+    let rigid = RigidCourse::of(&smooth, &motion);
+    let mut currents = readings(
+        &smooth,
+        &motion,
+        &channels,
+        &all_bristles(&smooth, &motion),
+        &rigid,
+    );
+    for (joint, own) in currents.iter_mut().enumerate() {
+        let drive = &truth.drives[joint];
+        for (current, speed) in own.iter_mut().zip(&motion.speed[joint]) {
+            let noise: f64 = random.sample(StandardNormal);
+            let friction = drive.coulomb * (speed / 2e-3).tanh();
+            *current += drive.inverse_gain * friction + NOISE * noise;
+        }
+    }
+    ArmRecording {
+        name: format!("recording_{}", motion.recording),
+        motion,
+        readings: currents,
+    }
+}
+
+fn input(truth: &ArmParameters, held: bool) -> ArmInput {
+    let nominal = nominal();
+    let mut random = ChaCha8Rng::seed_from_u64(11);
+    let within = |quantity: Quantity, share: f64| {
+        let value = quantity.value(&nominal);
+        Tolerated {
+            quantity,
+            bounds: [value * (1.0 - share), value * (1.0 + share)],
+        }
+    };
+    let tolerated = (0..JOINTS).flat_map(|joint| {
+        [
+            within(Quantity::InverseGain(joint), 0.1),
+            within(Quantity::MotorInertia(joint), 0.3),
+            within(Quantity::Coulomb(joint), 0.3),
+            within(Quantity::Viscous(joint), 0.3),
+        ]
+    });
+    let held = held.then_some(2);
+    let recordings = (0..2).chain(held);
+    ArmInput {
+        links: (1..=JOINTS).map(|i| format!("link_{i}")).collect(),
+        numbers: (1..=JOINTS).collect(),
+        tolerated: tolerated.collect(),
+        channels: (0..JOINTS).map(Channel::Drive).collect(),
+        columns: (1..=JOINTS)
+            .map(|i| format!("joint_{i}_current_a"))
+            .collect(),
+        noise: vec![NOISE; JOINTS],
+        recordings: recordings
+            .map(|r| recorded(truth, motion(r, r == 2), &mut random))
+            .collect(),
+        nominal,
+    }
+}
+
+fn answer(plant: impl Fn(&mut ArmParameters)) -> Answer {
+    let mut truth = nominal();
+    // Within their tolerances.
+    truth.drives[0].inverse_gain *= 1.06;
+    truth.drives[1].coulomb *= 0.8;
+    truth.drives[2].motor_inertia *= 1.2;
+    plant(&mut truth);
+    diagnose(&input(&truth, false), &mut |_| {}).answer
+}
+
+#[test]
+fn an_arm_within_its_tolerances_lacks_nothing() {
+    let answer = answer(|_| {});
+    assert_eq!(
+        answer.verdict,
+        Verdict::NothingMissing,
+        "{:?}",
+        answer.effects
+    );
+    assert!(answer.mismatch.is_empty());
+}
+
+#[test]
+fn a_payload_is_named_with_its_mass_and_centre() {
+    let planted = PointMass {
+        mass: 2.0,
+        moment: 2.0 * DVec3::new(0.05, -0.03, 0.08),
+    };
+    let answer = answer(|arm| arm.payload = planted);
+    let names: Vec<&str> = answer.effects.iter().map(|e| e.name.as_str()).collect();
+    assert_eq!(names, ["payload"]);
+    let mass = answer.effects[0].parameters[0].1;
+    assert!(mass.low <= 2.0 && 2.0 <= mass.high, "{mass:?}");
+    assert!((mass.value - 2.0).abs() < 0.3, "{mass:?}");
+    assert!(!answer.mismatch.is_empty());
+}
+
+#[test]
+fn a_gear_s_ripple_is_named_with_its_cycles() {
+    let answer = answer(|arm| {
+        arm.drives[1].ripple = [1.5, 1.0];
+        arm.drives[1].ripple_cycles = 21.0;
+    });
+    let names: Vec<&str> = answer.effects.iter().map(|e| e.name.as_str()).collect();
+    assert_eq!(names, ["gear_ripple"]);
+    let number = |i: usize| answer.effects[0].parameters[i].1.value;
+    assert!((number(0) / 1.5f64.hypot(1.0) - 1.0).abs() < 0.05);
+    assert!((number(1) - 21.0).abs() < 0.1);
+    assert_eq!(answer.effects[0].parameters.place_words(), " (joint 2)");
+}
+
+#[test]
+fn a_push_on_an_arm_that_holds_still_is_found_when_it_was() {
+    let mut truth = nominal();
+    let mut input = input(&truth, true);
+    assert!(touching(&input).iter().all(|touches| !touches));
+    assert_eq!(held_pushes(&input, &truth), []);
+    // A force of 60 N for two seconds, by the levers of the flange.
+    let own = &mut input.recordings[2];
+    let lever = super::pushed::levers(&truth, &own.motion, 0);
+    for (joint, currents) in own.readings.iter_mut().enumerate() {
+        for (current, time) in currents.iter_mut().zip(&own.motion.time) {
+            if (6.0..8.0).contains(time) {
+                *current -= 0.1 * lever[joint].dot(DVec3::new(0.0, 60.0, 0.0));
+            }
+        }
+    }
+    truth.drives[0].offset = 0.0;
+    let found = held_pushes(&input, &truth);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!((found[0].start - 6.0).abs() < 0.15 && (found[0].end - 8.0).abs() < 0.15);
+    assert_eq!(found[0].recording, 2);
+}
