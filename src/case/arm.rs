@@ -101,7 +101,11 @@ impl ArmCase {
 
     /// Diagnoses it; what the improved file says is what predicts.
     pub fn diagnosed(&self, start: Instant) -> Result<Diagnosed, CaseError> {
-        let ArmDiagnosis { mut answer, fitted } = diagnose(&self.input, &mut |_| {});
+        let ArmDiagnosis {
+            mut answer,
+            tolerated,
+            fitted,
+        } = diagnose(&self.input, &mut |_| {});
         for note in &self.notes {
             answer.note(note.clone());
         }
@@ -113,8 +117,8 @@ impl ArmCase {
             Some(file) => file.arm(&names),
             None => fitted,
         };
-        let comparison = self.comparison(&model);
-        let prediction = self.prediction(&comparison)?;
+        let comparison = self.comparison(&tolerated, &model);
+        let prediction = Self::prediction(&comparison)?;
         if answer.details.noise.is_empty() {
             answer.details.noise = self.noise();
         }
@@ -132,25 +136,25 @@ impl ArmCase {
         })
     }
 
-    fn comparison(&self, improved: &ArmParameters) -> Comparison {
-        let models = [&self.input.nominal, improved];
+    fn comparison(&self, tolerated: &ArmParameters, improved: &ArmParameters) -> Comparison {
+        let models = [&self.input.nominal, tolerated, improved];
         let compared = |recording: &ArmRecording, unseen: bool| {
-            let [nominal, improved] =
+            let [nominal, tolerated, improved] =
                 models.map(|arm| predicted(arm, &recording.motion, &self.input.channels));
             let nothing = || vec![f64::NAN; recording.motion.len()];
-            let both = nominal.into_iter().zip(improved);
+            let both = nominal.into_iter().zip(tolerated).zip(improved);
             let channels = both.zip(&recording.readings).zip(&self.input.columns);
             let channels =
-                channels.map(
-                    |(((nominal, improved), measured), column)| ComparedChannel {
+                channels.map(|((((nominal, tolerated), improved), measured), column)| {
+                    ComparedChannel {
                         column: column.clone(),
                         measured: measured.clone(),
                         nominal,
-                        tolerated: nothing(),
+                        tolerated,
                         improved,
                         left_out: nothing(),
-                    },
-                );
+                    }
+                });
             Compared {
                 name: recording.name.clone(),
                 unseen,
@@ -167,7 +171,7 @@ impl ArmCase {
     }
 
     /// The improved arm's prediction of the recording that was kept back.
-    fn prediction(&self, comparison: &Comparison) -> Result<Option<String>, CaseError> {
+    fn prediction(comparison: &Comparison) -> Result<Option<String>, CaseError> {
         let Some(unseen) = comparison.recordings.iter().find(|run| run.unseen) else {
             return Ok(None);
         };
@@ -206,8 +210,10 @@ fn misfit(recording: &str, channel: &ComparedChannel, noise: f64) -> Option<Chan
         pairs.map(|(measured, model)| measured - model).collect()
     };
     let sigmas = |left: &[f64]| robust_rms(&left.iter().map(|l| l / noise).collect::<Vec<_>>());
-    let [nominal, improved] = [&channel.nominal, &channel.improved].map(|model| left(model));
+    let models = [&channel.nominal, &channel.tolerated, &channel.improved];
+    let [nominal, tolerated, improved] = models.map(|model| left(model));
     let (samples, nominal_sigmas) = sigmas(&nominal)?;
+    let (_, tolerated_sigmas) = sigmas(&tolerated)?;
     let (_, improved_sigmas) = sigmas(&improved)?;
     let rms = |values: &[f64]| root_mean_square(values.iter().copied()).unwrap_or(0.0);
     let own = rms(&channel.measured);
@@ -216,11 +222,11 @@ fn misfit(recording: &str, channel: &ComparedChannel, noise: f64) -> Option<Chan
         channel: channel.column.clone(),
         samples,
         nominal_sigmas,
-        tolerated_sigmas: nominal_sigmas,
+        tolerated_sigmas,
         improved_sigmas,
         left_out_sigmas: None,
         nominal_rms: rms(&nominal),
-        tolerated_rms: rms(&nominal),
+        tolerated_rms: rms(&tolerated),
         improved_rms: rms(&improved),
         improved_share: match own > 0.0 {
             true => rms(&improved) / own,

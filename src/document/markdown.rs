@@ -58,7 +58,7 @@ fn block(block: &Block<'_>, level: usize) -> String {
         Block::Paragraph(text) => format!("\n{}\n", escape(text)),
         Block::Table(of) => table(of),
         Block::Lines(lines) => format!("\n```\n{}\n```\n", lines.trim_end()),
-        Block::File(name, words) if name.ends_with(".svg") => {
+        Block::File(name, words) if is_picture(name) => {
             format!("\n![{}]({name})\n", escape(words))
         }
         Block::File(name, words) => format!("\n[{}]({name}): {}\n", escape(name), escape(words)),
@@ -124,4 +124,9 @@ fn escape(text: &str) -> String {
         out.push(letter);
     }
     out
+}
+/// Whether a file is a picture that a reader of Markdown shows.
+fn is_picture(name: &str) -> bool {
+    let extension = std::path::Path::new(name).extension();
+    extension.is_some_and(|extension| extension.eq_ignore_ascii_case("svg"))
 }

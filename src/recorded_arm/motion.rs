@@ -236,8 +236,7 @@ mod tests {
             .collect();
         let positions = vec![time.iter().map(|t| (3.0 * t).sin()).collect()];
         let motion = Motion::of_positions(0, &time, &positions, 25.0);
-        for i in 100..900 {
-            let t = time[i];
+        for (i, t) in time.iter().enumerate().take(900).skip(100) {
             assert!((motion.speed[0][i] - 3.0 * (3.0 * t).cos()).abs() < 2e-4);
             assert!((motion.acceleration[0][i] + 9.0 * (3.0 * t).sin()).abs() < 2e-2);
         }

@@ -98,6 +98,9 @@ fn crosstalk(wrench: &mut WrenchSensor, source: usize, target: usize) -> &mut f6
     &mut wrench.crosstalk[index].share
 }
 
+/// Where a number of a drive stands.
+type DriveField = fn(&mut Drive) -> &mut f64;
+
 impl Quantity {
     /// The number itself, where it is one that stands in the description as it is.
     fn slot(self, arm: &mut ArmParameters) -> Option<&mut f64> {
@@ -142,7 +145,7 @@ impl Quantity {
     }
 
     /// The joint and the field of its drive, of what stands there.
-    fn of_drive(self) -> Option<(usize, fn(&mut Drive) -> &mut f64)> {
+    fn of_drive(self) -> Option<(usize, DriveField)> {
         Some(match self {
             Self::InverseGain(j) => (j, |d| &mut d.inverse_gain),
             Self::MotorInertia(j) => (j, |d| &mut d.motor_inertia),

@@ -86,15 +86,15 @@ fn pushed(arm: &ArmParameters, motion: &Motion) -> Option<Vec<Vec<f64>>> {
     let joints = arm.joints();
     let mut all = vec![vec![0.0; motion.len()]; joints];
     let mut poses = [DPose3::IDENTITY; MAX_JOINTS];
-    for i in 0..motion.len() {
+    for (i, time) in motion.time.iter().enumerate() {
         for push in own() {
-            let share = push.share(motion.time[i]);
+            let share = push.share(*time);
             if share == 0.0 {
                 continue;
             }
             let mut q = [0.0; MAX_JOINTS];
-            for j in 0..joints {
-                q[j] = motion.position[j][i];
+            for (q, position) in q.iter_mut().zip(&motion.position) {
+                *q = position[i];
             }
             link_poses(
                 &arm.chain,
@@ -112,8 +112,8 @@ fn pushed(arm: &ArmParameters, motion: &Motion) -> Option<Vec<Vec<f64>>> {
                 force,
                 &mut out[..joints],
             );
-            for j in 0..joints {
-                all[j][i] += out[j];
+            for (all, out) in all.iter_mut().zip(out) {
+                all[i] += out;
             }
         }
     }

@@ -29,12 +29,13 @@ const FOUND: [SectionKind; 6] = [
 ];
 
 /// Parts of the account that are sections of their own, with the recordings last.
-const OTHERS: [SectionKind; 7] = [
+const OTHERS: [SectionKind; 8] = [
     SectionKind::Tried,
     SectionKind::NextExperiment,
     SectionKind::Arm,
     SectionKind::PathPlaces,
     SectionKind::NotWritten,
+    SectionKind::Controller,
     SectionKind::HowToRun,
     SectionKind::Recordings,
 ];

@@ -39,7 +39,7 @@ pub fn account(
         SectionKind::Missing,
         effects.iter().map(of_effect).collect(),
     );
-    account.add(SectionKind::HowToRun, controller(found, effects));
+    account.add(SectionKind::Controller, controller(found, effects));
     account.add(SectionKind::Remaining, left);
     let rivals = alternatives.iter().take(4).map(|rival| {
         format!(
@@ -76,12 +76,10 @@ fn of_effect(effect: &FoundEffect) -> String {
         })
         .collect();
     let law = match &effect.law {
-        Some(law) => format!(
-            "; {} = {} [SI; q angle, v speed, a acceleration, t_g torque carried, t time, z friction reached]",
-            law.acts_on.replace('_', " "),
-            law.is
-        ),
-        None => String::new(),
+        Some(_) => {
+            " (SI; q angle, v speed, a acceleration, t_g torque carried, t time, z share of the friction reached)"
+        }
+        None => "",
     };
     let numbers = match numbers.is_empty() {
         true => String::new(),
@@ -92,9 +90,8 @@ fn of_effect(effect: &FoundEffect) -> String {
         false => ", as likely as not at best",
     };
     format!(
-        "{}{}{numbers}{law}. Probability {}{sure}.",
+        "{}{numbers}{law}. Probability {}{sure}.",
         capital(&effect.meaning()),
-        effect.parameters.place_words(),
         percent(effect.confidence)
     )
 }

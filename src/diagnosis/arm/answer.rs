@@ -4,7 +4,7 @@ use super::effect::{ArmEffect, Candidate};
 use super::estimate::{Number, covariance, numbers, turned};
 use super::input::ArmInput;
 use super::search::{Found, Stage};
-use crate::diagnosis::answer::estimate::Estimate;
+use crate::diagnosis::answer::estimate::{Estimate, Limit};
 use crate::diagnosis::answer::parameters::{Parameters, Place};
 use crate::diagnosis::answer::statements::{doubts_of, stated};
 use crate::diagnosis::answer::{Alternative, FoundEffect, FoundLaw};
@@ -139,7 +139,10 @@ fn listed(
     reported: Vec<Number>,
 ) -> FoundEffect {
     let name = name_of(effect);
-    let numbers: Vec<(String, Estimate)> = reported.iter().map(estimate).collect();
+    let mut numbers: Vec<(String, Estimate)> = reported.iter().map(estimate).collect();
+    for (_, number) in &mut numbers {
+        number.at_limit = limit_of(found, effect, number);
+    }
     let plain: Vec<Estimate> = numbers.iter().map(|(_, number)| *number).collect();
     let doubts = doubts_of(&plain);
     FoundEffect {
@@ -154,6 +157,20 @@ fn listed(
         depends_on: Vec::new(),
         law: None,
         unlisted: None,
+    }
+}
+
+/// The end of what a link's mass may be, where its interval reaches that: then it may stand for something else.
+fn limit_of(found: &Found, effect: ArmEffect, number: &Estimate) -> Option<Limit> {
+    let ArmEffect::LinkMass(_) = effect else {
+        return None;
+    };
+    let own = found.best.effects.iter().find(|own| own.effect == effect)?;
+    let [least, most] = own.free.first()?.bounds;
+    match (number.low <= least, number.high >= most) {
+        (_, true) => Some(Limit::Upper),
+        (true, false) => Some(Limit::Lower),
+        (false, false) => None,
     }
 }
 

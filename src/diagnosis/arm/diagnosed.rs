@@ -24,6 +24,8 @@ const EXPLAINED: f64 = 1.3;
 pub struct ArmDiagnosis {
     /// The answer.
     pub answer: Answer,
+    /// The description as declared, moved within its tolerances to the recordings.
+    pub tolerated: ArmParameters,
     /// The whole improved description.
     pub fitted: ArmParameters,
 }
@@ -77,7 +79,11 @@ pub fn diagnose(input: &ArmInput, observer: &mut dyn FnMut(usize)) -> ArmDiagnos
     {
         fitted.delay = input.nominal.delay;
     }
-    ArmDiagnosis { answer, fitted }
+    ArmDiagnosis {
+        answer,
+        tolerated: found.nominal.fit.arm,
+        fitted,
+    }
 }
 
 /// Where the effects act; nowhere without any.

@@ -308,7 +308,9 @@ fn of_load_and_mount(input: &ArmInput, all: &mut Vec<Candidate>) {
         (Q::PayloadMoment(1), ANY),
         (Q::PayloadMoment(2), ANY),
     ];
-    all.push(Candidate::linear(ArmEffect::Payload, &payload));
+    // From a mass on that has a centre.
+    let begun = [(Q::PayloadMass, 0.1)];
+    all.push(Candidate::linear(ArmEffect::Payload, &payload).from(&begun));
     for link in 0..input.nominal.joints() {
         let mass = input.nominal.chain.joints[link].body.mass;
         if mass > 0.0 {

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! H curvature of half the cost, with what is known of the tolerated numbers; s a fifth more than the noise alone. What a law of a textbook leaves of a real
-//! joint, gear or hose is added: its size is right to [`FORM`] (Armstrong-Helouvry et al., Automatica 30 (1994), 1083: friction differs that much from one
+//! joint, gear or hose is added: its size is right to four hundredths (Armstrong-Helouvry et al., Automatica 30 (1994), 1083: friction differs that much from one
 //! law to another on the same data).
 
 use nalgebra::{DMatrix, DVector};

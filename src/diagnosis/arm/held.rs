@@ -4,7 +4,7 @@
 //! D(t)^2 = sum over joints of ((i - b(t))/s)^2
 //! ```
 //!
-//! i current or torque, averaged over [`AVERAGED`], b level between those before and after, s its noise. A push begins and ends where D passes a share of its
+//! i current or torque, averaged over a tenth of a second, b level between those before and after, s its noise. A push begins and ends where D passes a share of its
 //! largest value; its force is that of least squares over the levers, as far as friction leaves it.
 
 use glam::DVec3;
@@ -27,6 +27,8 @@ const CHANGES: f64 = 0.25;
 const SIGNIFICANT: f64 = 4.0;
 /// Time between two changes that belong to one push [s].
 const ONE_PUSH: f64 = 0.9;
+/// Share of the largest departure that a force which is held keeps [1].
+const HOLDS: f64 = 0.6;
 /// Share of the largest departure within which a push acts [1].
 const SHARE: f64 = 0.3;
 /// Largest departure of a push, over the noise of one sample [1].
@@ -79,27 +81,49 @@ fn of_recording(input: &ArmInput, arm: &ArmParameters, recording: usize) -> Vec<
         largest.fold(0.0, f64::max)
     };
     let busy: Vec<bool> = (0..count).map(|i| changes(i) > SIGNIFICANT).collect();
+    let mut stretches: Vec<[usize; 2]> = Vec::new();
+    let bridge = (ONE_PUSH / step) as usize;
+    for i in (0..count).filter(|i| busy[*i]) {
+        let end = (i + lag).min(count - 1);
+        match stretches.last_mut() {
+            Some([_, last]) if i <= *last + bridge => *last = end,
+            _ => stretches.push([i, end]),
+        }
+    }
+    let level = |range: std::ops::Range<usize>| -> Vec<f64> {
+        let means = drives.iter().map(|(_, _, d)| mean(d, range.clone()));
+        means.collect()
+    };
+    let quiet = (LEVELS / step) as usize;
+    let away = |a: &[f64], b: &[f64]| -> f64 {
+        let squares = a.iter().zip(b).map(|(a, b)| (a - b).powi(2));
+        squares.sum::<f64>().sqrt()
+    };
     let mut found = Vec::new();
-    let mut i = 0;
-    while i < count {
-        if !busy[i] {
-            i += 1;
-            continue;
-        }
-        let (first, mut last) = (i, i + lag);
-        let bridge = (ONE_PUSH / step) as usize;
-        let mut next = i + 1;
-        while next < count && next <= last + bridge {
-            if busy[next] {
-                last = next + lag;
+    let mut next = stretches.into_iter().peekable();
+    while let Some([first, mut last]) = next.next() {
+        let before = level(first.saturating_sub(quiet)..first.max(1));
+        // A force that is held still departs as far as while it grew.
+        while let Some([start, end]) = next.peek().copied() {
+            let most = (first..=last)
+                .map(|i| away(&level(i..i + 1), &before))
+                .fold(0.0, f64::max);
+            if away(&level(last..start.max(last + 1)), &before) < HOLDS * most {
+                break;
             }
-            next += 1;
+            last = end;
+            next.next();
         }
-        let last = last.min(count - 1);
         found.extend(push(input, arm, recording, &drives, [first, last]));
-        i = last + 1;
     }
     found
+}
+
+/// Mean over samples.
+fn mean(d: &[f64], range: std::ops::Range<usize>) -> f64 {
+    let end = range.end.clamp(1, d.len());
+    let part = &d[range.start.min(end - 1)..end];
+    part.iter().sum::<f64>() / part.len() as f64
 }
 
 /// A push within a stretch of samples; none where nothing departs far.
@@ -114,11 +138,6 @@ fn push(
     let time = &motion.time;
     let step = sample_time(time);
     let samples = |seconds: f64| (seconds / step) as usize;
-    let mean = |d: &[f64], range: std::ops::Range<usize>| {
-        let range = range.start.min(d.len() - 1)..range.end.clamp(1, d.len());
-        let part = &d[range.start.min(range.end - 1)..range.end];
-        part.iter().sum::<f64>() / part.len() as f64
-    };
     let before = first.saturating_sub(samples(LEVELS))..first.max(1);
     let after = last..last + samples(LEVELS);
     let levels: Vec<[f64; 2]> = (drives.iter())

@@ -172,10 +172,16 @@ pub fn screen(
     columns: &mut Columns,
 ) -> Vec<f64> {
     let base = Base::of(evidence, hypothesis, scales, columns);
-    candidates
-        .iter()
-        .map(|candidate| base.promised(evidence, hypothesis, candidate, scales))
-        .collect()
+    let promised = |candidate: &Candidate| {
+        let promised = base.promised(evidence, hypothesis, candidate, scales);
+        // Where one step leads nowhere, a whole fit says what there is to gain.
+        if promised.is_finite() {
+            return promised;
+        }
+        let whole = hypothesis.with(evidence, candidate, scales, columns);
+        hypothesis.fit.cost - whole.fit.cost
+    };
+    candidates.iter().map(promised).collect()
 }
 
 /// Normal equations of a hypothesis, to which a candidate's are added.

@@ -27,12 +27,14 @@ pub fn laws(evidence: &Evidence, fit: &Fit, joint: usize) -> Vec<Candidate> {
         for factor in factors {
             let of = |shape| (shape, variable, factor);
             // Motor inertia, a spring, viscous friction have names; a square of the speed is among the forms.
-            let named = match (variable, factor) {
-                (Variable::Angle | Variable::Acceleration | Variable::Speed, Factor::One) => true,
-                (Variable::Load, Factor::Friction) => true,
-                (Variable::Speed, Factor::Speed) => true,
-                _ => false,
-            };
+            let named = matches!(
+                (variable, factor),
+                (
+                    Variable::Angle | Variable::Acceleration | Variable::Speed,
+                    Factor::One
+                ) | (Variable::Load, Factor::Friction)
+                    | (Variable::Speed, Factor::Speed)
+            );
             for i in 1..PLACES {
                 let at = low + span * i as f64 / PLACES as f64;
                 for shape in [Shape::SlopeAbove, Shape::SlopeBelow] {

@@ -16,6 +16,7 @@ use super::hypothesis::{Hypothesis, screen};
 use super::laws::laws;
 use super::pushed::pushes;
 use crate::recorded_arm::Quantity;
+use crate::recorded_arm::law::{JointLaw, Shape};
 
 /// Worth from which an effect is taken in [1].
 const WORTH: f64 = 16.0;
@@ -139,7 +140,14 @@ impl Search<'_> {
         let laws = joints
             .iter()
             .flat_map(|joint| laws(self.evidence, &best.fit, *joint));
-        let laws: Vec<Candidate> = laws.collect();
+        // One periodic torque of a gear has a name.
+        let known = best.names();
+        let named = |law: &JointLaw| {
+            law.shape == Shape::Sine && !known.contains(&ArmEffect::GearRipple(law.joint))
+        };
+        let laws: Vec<Candidate> = laws
+            .filter(|c| !c.law.as_ref().is_some_and(named))
+            .collect();
         tried.extend(self.try_each(best, laws));
         tried.sort_by(|a, b| b.worth.total_cmp(&a.worth));
         let accepted = self.acceptable(&tried, before);
@@ -148,10 +156,14 @@ impl Search<'_> {
 
     /// The first of those tried that is worth it, seen in the readings, and not more than a simpler one that says as much.
     fn acceptable(&self, tried: &[Tried], before: &[Stage]) -> Option<usize> {
+        // One that is contained in another, or has a name where the other has none, is the answer where it says as much.
         let simple_enough = |of: &Tried| {
-            let simpler = of.effect.simpler();
-            let enough =
-                |other: &Tried| Some(other.effect) == simpler && other.gain > ENOUGH * of.gain;
+            let unnamed = |effect| matches!(effect, ArmEffect::Unlisted(_));
+            let is_simpler = |other: ArmEffect| {
+                of.effect.simpler() == Some(other)
+                    || unnamed(of.effect) && !unnamed(other) && other.joint() == of.effect.joint()
+            };
+            let enough = |other: &Tried| is_simpler(other.effect) && other.gain > ENOUGH * of.gain;
             !tried.iter().any(enough)
         };
         let most = |effect: ArmEffect| {
@@ -236,8 +248,8 @@ impl Search<'_> {
         let worth = |i: usize| promised[i] - self.price(&all[i]);
         // The best way of each effect.
         let mut ways: BTreeMap<ArmEffect, usize> = BTreeMap::new();
-        for i in 0..all.len() {
-            let way = ways.entry(all[i].effect).or_insert(i);
+        for (i, candidate) in all.iter().enumerate() {
+            let way = ways.entry(candidate.effect).or_insert(i);
             if worth(i) > worth(*way) {
                 *way = i;
             }

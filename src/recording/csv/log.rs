@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::super::RecordingError;
 use super::columns::TIME;
-use super::table::fault;
+use super::table::{fault, value};
 
 /// A log; NaN where a field is empty.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -59,7 +59,7 @@ pub fn read_log_csv(path: &Path, wanted: impl Fn(&str) -> bool) -> Result<Log, R
     for record in reader.records() {
         let record = record.map_err(|e| fault(path, &e))?;
         let line = record.position().map_or(0, csv::Position::line);
-        let field = |place: usize, name: &str| number(path, line, name, &record[place]);
+        let field = |place: usize, name: &str| value(path, line, name, &record[place]);
         let time = field(stamps, TIME)?;
         if !log.takes(path, line, time)? {
             continue;
@@ -115,23 +115,6 @@ impl Log {
         self.time.push(time);
         self.lines.push(line);
         Ok(true)
-    }
-}
-
-/// A field as a number, NaN if it is empty.
-fn number(path: &Path, line: u64, column: &str, text: &str) -> Result<f64, RecordingError> {
-    if text.is_empty() {
-        return Ok(f64::NAN);
-    }
-    match text.parse::<f64>() {
-        Ok(value) if value.is_nan() || value.is_finite() => Ok(value),
-        _ => Err(RecordingError::Line {
-            path: path.to_owned(),
-            line,
-            column: column.to_owned(),
-            found: format!("{text:?}"),
-            expected: "a finite number, or nothing".to_owned(),
-        }),
     }
 }
 

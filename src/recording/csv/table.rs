@@ -183,7 +183,12 @@ fn time(path: &Path, line: u64, text: &str, before: Option<f64>) -> Result<f64, 
 }
 
 /// A field as a number, NaN if it is empty.
-fn value(path: &Path, line: u64, column: &str, text: &str) -> Result<f64, RecordingError> {
+pub(super) fn value(
+    path: &Path,
+    line: u64,
+    column: &str,
+    text: &str,
+) -> Result<f64, RecordingError> {
     if text.is_empty() {
         return Ok(f64::NAN);
     }

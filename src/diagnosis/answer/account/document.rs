@@ -61,6 +61,8 @@ listed! {
         PathPlaces = "Where on the path",
         /// What the improved file has no place for.
         NotWritten = "What improved.toml leaves out",
+        /// Numbers for a robot's controller.
+        Controller = "What to write into the controller",
         /// Commands for the improved file.
         HowToRun = "How to run what was found",
     }
