@@ -4,6 +4,7 @@ use std::cell::RefCell;
 use std::path::Path;
 
 use super::error::CaseError;
+use super::postures::stills_in;
 use super::recordings::{read_in_any_unit, read_rig};
 use crate::diagnosis::data_fault::take_off;
 use crate::diagnosis::flange::{ForceRamp, NoContact, Run, RunMetrics};
@@ -21,6 +22,12 @@ pub const RIG: &str = "rig.toml";
 /// A folder without one, one without recordings, or what is wrong with the file.
 pub fn rig_of(folder: &Path) -> Result<RigFile, CaseError> {
     if !folder.join(RIG).is_file() {
+        if let Some(table) = stills_in(folder) {
+            return Err(CaseError::PosturesUnstated {
+                folder: folder.display().to_string(),
+                table,
+            });
+        }
         return Err(CaseError::NoRig {
             folder: folder.display().to_string(),
         });

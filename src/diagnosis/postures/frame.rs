@@ -1,4 +1,4 @@
-//! Axes in which a wrench sensor's readings may be given, against those that are believed: the sensor's own, by the pose as it is logged.
+//! Axes in which a wrench sensor's readings may be given, against those that are declared.
 
 use nalgebra::{Matrix3, Rotation3, Unit, Vector3};
 
@@ -29,7 +29,7 @@ pub enum Turn {
 pub struct Frame {
     /// Their axes.
     pub axes: Axes,
-    /// How these are turned.
+    /// How these are turned against what is declared.
     pub turn: Turn,
     /// Whether the pose is the inverse of what it says: the base in the sensor's axes.
     pub inverse: bool,
@@ -37,25 +37,25 @@ pub struct Frame {
     pub opposite: bool,
 }
 
-/// Probability before any reading that readings are in the base's axes [1].
-const IN_BASE: f64 = 0.1;
-/// That the pose is the inverse.
+/// Probability before any reading that readings are in the base's axes where the sensor's are declared, or the other way round [1].
+const OTHER_AXES: f64 = 0.1;
+/// That the pose is the inverse of the declared one.
 const INVERSE: f64 = 0.05;
-/// That readings have the opposite sign.
+/// That readings have the opposite of the declared sign.
 const OPPOSITE: f64 = 0.1;
 /// That axes are turned by quarters about z, about x or y, by any angle about z, anyhow.
 const TURNED: [f64; 4] = [0.06, 0.03, 0.06, 0.02];
 
 impl Frame {
-    /// The believed one.
-    pub const BELIEVED: Self = Self {
+    /// The sensor's own axes, by the pose as it is logged.
+    pub const PLAIN: Self = Self {
         axes: Axes::Sensor,
         turn: Turn::None,
         inverse: false,
         opposite: false,
     };
 
-    /// All that are tried; the sign is told by the fit.
+    /// All that are tried; the sign comes out of the fit.
     #[must_use]
     pub fn all() -> Vec<Self> {
         let mut turns = vec![Turn::None, Turn::AboutZ, Turn::Free];
@@ -74,9 +74,9 @@ impl Frame {
         frames
     }
 
-    /// Natural logarithm of its probability before any reading [1].
+    /// Natural logarithm of its probability before any reading, where another is declared [1].
     #[must_use]
-    pub fn prior(&self) -> f64 {
+    pub fn prior(&self, declared: &Self) -> f64 {
         let odds = |is: bool, share: f64| if is { share } else { 1.0 - share };
         let turn = match self.turn {
             Turn::None => 1.0 - TURNED.iter().sum::<f64>(),
@@ -85,27 +85,29 @@ impl Frame {
             Turn::AboutZ => TURNED[2],
             Turn::Free => TURNED[3],
         };
-        let axes = odds(self.axes == Axes::Base, IN_BASE);
-        (axes * odds(self.inverse, INVERSE) * odds(self.opposite, OPPOSITE) * turn).ln()
+        let axes = odds(self.axes != declared.axes, OTHER_AXES);
+        let inverse = odds(self.inverse != declared.inverse, INVERSE);
+        (axes * inverse * odds(self.opposite != declared.opposite, OPPOSITE) * turn).ln()
     }
 
-    /// Whether the sensor's axes are turned about z, and nothing else is wrong.
+    /// Whether the sensor's axes are turned about z, and nothing else is other than declared.
     #[must_use]
-    pub fn is_turned_about_z(&self) -> bool {
+    pub fn is_turned_about_z(&self, declared: &Self) -> bool {
         matches!(self.turn, Turn::AboutZ | Turn::Quarters(2, _))
+            && self.axes == Axes::Sensor
             && *self
                 == Self {
                     turn: self.turn,
-                    ..Self::BELIEVED
+                    ..*declared
                 }
     }
 
-    /// In words, after "the readings are".
+    /// In words, behind "the readings are".
     #[must_use]
     pub fn words(&self) -> String {
         let mut text = match self.axes {
             Axes::Sensor => "in the sensor's axes",
-            Axes::Base => "in the base's axes: something has turned them by the pose already",
+            Axes::Base => "in the base's axes (something has turned them by the pose already)",
         }
         .to_owned();
         match self.turn {
@@ -118,12 +120,30 @@ impl Frame {
             Turn::Free => text += ", turned",
         }
         if self.inverse {
-            text += "; the pose is the inverse of what it says (the base in the sensor's axes)";
+            text += ", the pose being that of the base in the sensor's axes";
         }
         if self.opposite {
-            text += "; the sign is that of what the sensor does to the tool";
+            text += ", with the sign of what the sensor does to the tool";
         }
         text
+    }
+
+    /// The reading of a force by zero, weight and pose, in symbols.
+    #[must_use]
+    pub fn formula(&self) -> String {
+        let (own, other) = match self.inverse {
+            false => ("P", "P'"),
+            true => ("P'", "P"),
+        };
+        let sign = if self.opposite { "-" } else { "+" };
+        let turn = match self.turn {
+            Turn::None => "",
+            _ => "C ",
+        };
+        match self.axes {
+            Axes::Sensor => format!("{turn}(zero {sign} {other} weight)"),
+            Axes::Base => format!("{turn}{own} (zero {sign} {other} weight)"),
+        }
     }
 }
 

@@ -10,12 +10,18 @@
 //! before any reading, p(tilt) how well the weight lies along gravity: zero and weight change places where the pose is the inverse, and the readings' fit is
 //! then the same. Leaves out: gains, crosstalk and drift of the sensor; a pose that errs from posture to posture, but for its share in the intervals.
 
+mod account;
+mod answer;
+pub mod diagnosed;
 pub mod estimate;
 pub mod fit;
 pub mod frame;
+pub mod model;
 pub mod select;
 #[cfg(test)]
 mod tests;
+
+pub use account::axes_angles;
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -26,8 +32,17 @@ pub struct Posture {
     pub base_from_sensor: Matrix3<f64>,
     /// Force as read [N].
     pub force: Vector3<f64>,
-    /// Torque as read [N m].
-    pub torque: Vector3<f64>,
+    /// Torque as read [N m]; of a recording either all have one or none.
+    pub torque: Option<Vector3<f64>>,
+}
+
+/// Postures of a recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StillRecording {
+    /// Its name.
+    pub name: String,
+    /// Its postures, in the order of its rows.
+    pub postures: Vec<Posture>,
 }
 
 /// Sine of the turn, root mean square, about the axis that postures turn the sensor about least [1]: 0 where all turn about one.

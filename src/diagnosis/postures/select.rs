@@ -2,29 +2,22 @@
 
 use std::f64::consts::PI;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 use super::Posture;
+use super::estimate::numbers;
 use super::fit::{Fit, fit};
 use super::frame::{Frame, Turn};
+use super::model::{Bounded, Nominal};
 
 /// Share of bases that stand tilted anyhow [1].
 const TILTED: f64 = 0.05;
+/// Share of declared numbers that are wrong by anything [1].
+const WRONG: f64 = 0.1;
+/// Size of what a wrong mass [kg], centre [m], force [N] and torque [N m] may be.
+const WIDTHS: [f64; 4] = [10.0, 0.5, 50.0, 5.0];
 /// Most that is stated of one [1].
-const SUREST: f64 = 0.98;
-
-/// What is believed of gravity and sensor.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Belief {
-    /// Gravity in the base's axes [m/s2].
-    pub gravity: Vector3<f64>,
-    /// How far the weight may lie from it [rad].
-    pub tilt: f64,
-    /// How far the sensor's axes may be turned [rad].
-    pub turn: f64,
-    /// Noise of a force [N] and of a torque [N m]; 0: not known.
-    pub noise: [f64; 2],
-}
+pub const SUREST: f64 = 0.98;
 
 /// A frame with its fit.
 #[derive(Debug, Clone)]
@@ -37,14 +30,14 @@ pub struct Candidate {
 
 /// All frames that the postures can be fitted in, the likeliest first; nothing where they do not tell the numbers.
 #[must_use]
-pub fn candidates(postures: &[Posture], belief: &Belief) -> Vec<Candidate> {
+pub fn candidates(postures: &[Posture], nominal: &Nominal) -> Vec<Candidate> {
     let fits = Frame::all()
         .into_iter()
-        .filter_map(|frame| fit(postures, frame, belief.noise));
+        .filter_map(|frame| fit(postures, frame, nominal));
     let mut weighed: Vec<(f64, Fit)> = fits
-        .filter(|fit| !is_within(fit, belief.turn))
-        .map(|fit| signed(fit, belief.gravity))
-        .map(|fit| (worth(&fit, postures.len(), belief), fit))
+        .filter(|fit| !is_within(fit, nominal))
+        .map(|fit| signed(fit, nominal.gravity))
+        .map(|fit| (worth(&fit, postures, nominal), fit))
         .collect();
     weighed.sort_by(|a, b| b.0.total_cmp(&a.0));
     let best = weighed.first().map_or(0.0, |(worth, _)| *worth);
@@ -57,19 +50,20 @@ pub fn candidates(postures: &[Posture], belief: &Belief) -> Vec<Candidate> {
 }
 
 /// Whether a turn that is free has come out as one that a plainer frame has.
-fn is_within(fit: &Fit, tolerance: f64) -> bool {
+fn is_within(fit: &Fit, nominal: &Nominal) -> bool {
     if fit.frame.turn.count() == 0 {
         return false;
     }
+    let turn = fit.turn * nominal.axes_turn.transpose();
     let plain = Frame::all().into_iter().map(|frame| frame.turn);
     let fixed = plain.filter(|turn| matches!(turn, Turn::None | Turn::Quarters(..)));
     let mut starts = fixed.flat_map(Turn::starts);
-    starts.any(|start| angle_between(&start, &fit.turn) <= tolerance)
+    starts.any(|start| angle_between(&start, &turn) <= nominal.turn)
         // A free turn about z is the turn about z.
-        || (fit.frame.turn == Turn::Free && fit.turn[(2, 2)].clamp(-1.0, 1.0).acos() <= tolerance)
+        || (fit.frame.turn == Turn::Free && turn[(2, 2)].clamp(-1.0, 1.0).acos() <= nominal.turn)
 }
 
-fn angle_between(one: &nalgebra::Matrix3<f64>, other: &nalgebra::Matrix3<f64>) -> f64 {
+fn angle_between(one: &Matrix3<f64>, other: &Matrix3<f64>) -> f64 {
     let cosine = 0.5 * ((one.transpose() * other).trace() - 1.0);
     cosine.clamp(-1.0, 1.0).acos()
 }
@@ -81,13 +75,48 @@ fn signed(mut fit: Fit, gravity: Vector3<f64>) -> Fit {
 }
 
 /// Natural logarithm of what a fit is worth, but for a constant of all.
-fn worth(fit: &Fit, postures: usize, belief: &Belief) -> f64 {
-    let rows = (6 * postures) as f64;
+fn worth(fit: &Fit, postures: &[Posture], nominal: &Nominal) -> f64 {
+    let rows = (6 * postures.len()) as f64;
     let penalty = 0.5 * fit.frame.turn.count() as f64 * rows.ln();
-    let tilt = fit.weight().angle(&belief.gravity);
-    let variance = belief.tilt.max(1e-3).powi(2);
+    let tilt = fit.weight().angle(&nominal.gravity);
+    let variance = nominal.tilt.max(1e-3).powi(2);
     // On the sphere: near gravity, or anywhere.
     let near = (1.0 - TILTED) * (-0.5 * tilt * tilt / variance).exp() / (2.0 * PI * variance);
     let anywhere = TILTED / (4.0 * PI);
-    fit.frame.prior() + (near + anywhere).ln() - fit.cost - penalty
+    let prior = fit.frame.prior(&nominal.frame) + (near + anywhere).ln();
+    prior + as_declared(fit, postures, nominal) - fit.cost - penalty
+}
+
+/// Natural logarithm of how well the numbers of a fit go with those that are declared [1].
+fn as_declared(fit: &Fit, postures: &[Posture], nominal: &Nominal) -> f64 {
+    let declared = &nominal.declared;
+    if declared.is_empty() {
+        return 0.0;
+    }
+    let found = numbers(postures, fit, nominal);
+    let density = |(bounded, [value, low, high]): (Bounded, [f64; 3])| {
+        let own = 0.25 * (high - low);
+        let variance = own.powi(2) + bounded.half_width().powi(2) + 1e-12;
+        (-0.5 * (value - bounded.value).powi(2) / variance).exp() / (2.0 * PI * variance).sqrt()
+    };
+    let mut sum = 0.0;
+    let mut weigh = |pairs: Vec<(Bounded, [f64; 3])>, width: f64| {
+        let wrong = WRONG / width.powi(pairs.len() as i32);
+        if !pairs.is_empty() {
+            let right: f64 = pairs.into_iter().map(density).product();
+            sum += ((1.0 - WRONG) * right + wrong).ln();
+        }
+    };
+    let three = |declared: Option<[Bounded; 3]>, found: [[f64; 3]; 3]| {
+        let pairs = declared.into_iter().flatten().zip(found);
+        pairs.collect::<Vec<_>>()
+    };
+    let mass = declared.mass.map(|mass| (mass, found.mass));
+    weigh(mass.into_iter().collect(), WIDTHS[0]);
+    weigh(three(declared.zero, found.zero), WIDTHS[2]);
+    if fit.has_torques {
+        weigh(three(declared.centre, found.centre), WIDTHS[1]);
+        weigh(three(declared.torque_zero, found.torque_zero), WIDTHS[3]);
+    }
+    sum
 }
