@@ -96,8 +96,7 @@ fn account(bench: &Bench) -> String {
 
 /// Of an identified number [SI].
 fn identified(answer: &Value, key: &str) -> f64 {
-    let all = answer["details"]["identified"].as_array();
-    let all = all.or(answer["identified"].as_array()).unwrap();
+    let all = answer["identified"].as_array().unwrap();
     let number = all.iter().find(|number| number["key"] == key).unwrap();
     number["found"]["value"].as_f64().unwrap()
 }

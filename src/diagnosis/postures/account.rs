@@ -45,7 +45,11 @@ pub(super) fn account(found: &Found<'_>, effects: &[FoundEffect], models: &[Mode
     let recordings = found.input.recordings.iter();
     let recordings =
         recordings.map(|r| format!("{}: {}.", r.name, counted(r.postures.len(), "posture")));
-    account.add(SectionKind::Recordings, recordings.collect());
+    let mut recordings: Vec<String> = recordings.collect();
+    if !found.best().fit.has_torques {
+        recordings.push("No torques were read, as a table has no columns of them (torque_x_n_m to torque_z_n_m; [columns] names others).".to_owned());
+    }
+    account.add(SectionKind::Recordings, recordings);
     account
 }
 

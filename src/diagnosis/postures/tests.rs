@@ -112,14 +112,14 @@ fn turned_axes_are_found_with_their_angle() {
 
 #[test]
 fn intervals_hold_what_was_planted() {
-    let (mut held, mut all) = (0, 0);
+    let (mut held, mut all) = (0, 0_u32);
     for seed in 1..=40 {
         let postures = planted(seed, Axes::Base, 0.0, false, 1.0);
         let best = &candidates(&postures[..10], &nominal())[0];
         let found = numbers(&postures[..10], &best.fit, &nominal());
         let mut check = |[_, low, high]: [f64; 3], truth: f64| {
             all += 1;
-            held += usize::from(low <= truth && truth <= high);
+            held += u32::from(low <= truth && truth <= high);
         };
         check(found.weight, WEIGHT);
         for i in 0..3 {
@@ -128,7 +128,7 @@ fn intervals_hold_what_was_planted() {
             check(found.centre[i], CENTRE[i]);
         }
     }
-    let share = held as f64 / all as f64;
+    let share = f64::from(held) / f64::from(all);
     assert!((0.92..=0.995).contains(&share), "{share}");
 }
 
@@ -144,11 +144,11 @@ fn postures_about_one_axis_do_not_turn_the_sensor_enough() {
     assert!(least_turn(&planted(1, Axes::Sensor, 0.0, false, 1.0)) > 0.5);
 }
 
-fn answer(postures: Vec<Posture>, nominal: Nominal) -> Answer {
+fn answer(postures: Vec<Posture>, nominal: &Nominal) -> Answer {
     let name = "stills.csv".to_owned();
     let recordings = vec![StillRecording { name, postures }];
     let found = diagnose(&PosturesInput {
-        nominal,
+        nominal: *nominal,
         recordings,
     });
     let answer = found.unwrap().answer;
@@ -190,7 +190,7 @@ fn declared() -> Nominal {
 #[test]
 fn where_nothing_is_wrong_nothing_is_missing() {
     for seed in 1..=40 {
-        for nominal in [nominal(), declared()] {
+        for nominal in [&nominal(), &declared()] {
             let answer = answer(planted(seed, Axes::Sensor, 0.0, false, 1.0), nominal);
             assert_eq!(names(&answer), [""; 0], "seed {seed}");
             assert_eq!(answer.verdict, Verdict::NothingMissing);
@@ -203,7 +203,7 @@ fn what_is_not_as_declared_is_named_with_its_numbers() {
     let mut off = declared();
     off.declared.mass = Some(bounded(1.0, 0.05));
     off.declared.zero = Some([bounded(0.0, 0.5); 3]);
-    let found = answer(planted(3, Axes::Sensor, 0.3, false, 1.0), off);
+    let found = answer(planted(3, Axes::Sensor, 0.3, false, 1.0), &off);
     let expected = ["wrench_frame_turned", "wrench_zero", "tool_weight_error"];
     assert_eq!(names(&found), expected);
     let effects = found.effects.iter();
@@ -239,13 +239,13 @@ fn a_declared_frame_is_no_finding_and_another_is() {
         axes_turn: Rotation3::from_euler_angles(0.0, 0.0, -0.8).into_inner(),
         ..nominal()
     };
-    let of = |axes, turn, nominal| answer(planted(2, axes, turn, false, 1.0), nominal);
-    assert_eq!(names(&of(Axes::Base, 0.0, in_base)), [""; 0]);
-    assert_eq!(names(&of(Axes::Sensor, 0.8, turned)), [""; 0]);
-    assert_eq!(names(&of(Axes::Sensor, 0.0, in_base)), ["unlisted"]);
-    assert_eq!(names(&of(Axes::Base, 0.0, nominal())), ["unlisted"]);
+    let of = |axes, turn, nominal: &Nominal| answer(planted(2, axes, turn, false, 1.0), nominal);
+    assert_eq!(names(&of(Axes::Base, 0.0, &in_base)), [""; 0]);
+    assert_eq!(names(&of(Axes::Sensor, 0.8, &turned)), [""; 0]);
+    assert_eq!(names(&of(Axes::Sensor, 0.0, &in_base)), ["unlisted"]);
+    assert_eq!(names(&of(Axes::Base, 0.0, &nominal())), ["unlisted"]);
     assert_eq!(
-        names(&of(Axes::Sensor, 0.0, turned)),
+        names(&of(Axes::Sensor, 0.0, &turned)),
         ["wrench_frame_turned"]
     );
 }
@@ -254,10 +254,10 @@ fn a_declared_frame_is_no_finding_and_another_is() {
 fn without_torques_what_rests_on_the_tilt_alone_is_said() {
     let forces = |axes| {
         let mut postures = planted(4, axes, 0.0, false, 1.0);
-        postures
-            .iter_mut()
-            .for_each(|posture| posture.torque = None);
-        answer(postures, nominal())
+        for posture in &mut postures {
+            posture.torque = None;
+        }
+        answer(postures, &nominal())
     };
     let found = forces(Axes::Base);
     assert_eq!(names(&found), ["unlisted"]);
