@@ -4,7 +4,8 @@ use std::fmt::Write as _;
 
 use idc_cell::case::PosturesCase;
 use idc_cell::diagnosis::postures::Posture;
-use idc_cell::diagnosis::postures::diagnosed::{PosturesInput, diagnose};
+use idc_cell::diagnosis::postures::diagnosed::diagnose;
+use idc_cell::diagnosis::postures::found::PosturesInput;
 use serde_json::Value;
 
 use crate::common::shared;

@@ -15,6 +15,7 @@ mod postures;
 mod recordings;
 mod removal_table;
 mod rig;
+mod stills;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

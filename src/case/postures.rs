@@ -12,13 +12,13 @@ use super::rig::names_to_fit;
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::answer::details::PredictionError;
 use crate::diagnosis::difference::localise::root_mean_square;
-use crate::diagnosis::postures::diagnosed::{
-    PosturesDiagnosis, PosturesInput, WRENCH_COLUMNS, diagnose, residuals,
-};
+use crate::diagnosis::postures::diagnosed::{PosturesDiagnosis, diagnose};
 use crate::diagnosis::postures::estimate::{Interval, Numbers};
-use crate::diagnosis::postures::frame::{Axes, Frame};
-use crate::diagnosis::postures::model::{Bounded, Declared, Model, Nominal};
-use crate::diagnosis::postures::{Posture, StillRecording, axes_angles, least_turn};
+use crate::diagnosis::postures::found::PosturesInput;
+use crate::diagnosis::postures::frame::{Axes, Frame, axes_angles};
+use crate::diagnosis::postures::model::{Model, WRENCH_COLUMNS, residuals};
+use crate::diagnosis::postures::nominal::{Bounded, Declared, Nominal};
+use crate::diagnosis::postures::{Posture, StillRecording, least_turn};
 use crate::recording::csv::{header_of, read_named};
 use crate::recording::provenance::Provenance;
 use crate::scenario::postures_file::{
@@ -74,21 +74,6 @@ pub struct PosturesDiagnosed {
 #[must_use]
 pub fn is_postures_case(folder: &Path) -> bool {
     folder.join(POSTURES).is_file()
-}
-
-/// A table in a folder that looks like still postures.
-pub(super) fn stills_in(folder: &Path) -> Option<String> {
-    let entries = std::fs::read_dir(folder).ok()?.flatten();
-    let mut names: Vec<String> = entries
-        .filter_map(|entry| entry.file_name().into_string().ok())
-        .filter(|name| name.to_ascii_lowercase().ends_with(".csv"))
-        .collect();
-    names.sort_unstable();
-    names.into_iter().find(|name| {
-        let header = header_of(&folder.join(name)).unwrap_or_default();
-        let has = |column: &str| header.iter().any(|own| own == column);
-        has("quaternion_w") && has(WRENCH_COLUMNS[0]) && !has("time_s")
-    })
 }
 
 impl PosturesCase {

@@ -4,8 +4,8 @@ use std::cell::RefCell;
 use std::path::Path;
 
 use super::error::CaseError;
-use super::postures::stills_in;
 use super::recordings::{read_in_any_unit, read_rig};
+use super::stills::stills_in;
 use crate::diagnosis::data_fault::take_off;
 use crate::diagnosis::flange::{ForceRamp, NoContact, Run, RunMetrics};
 use crate::diagnosis::recordings::input::{DiagnosisInput, NamedRecording, of_link, tolerated};

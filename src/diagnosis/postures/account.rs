@@ -1,10 +1,8 @@
 //! What is said of still postures: what the readings are, what to write into the controller, what is left.
 
-use nalgebra::Rotation3;
-
-use super::diagnosed::{Found, residuals};
-use super::frame::Axes;
-use super::model::Model;
+use super::found::Found;
+use super::frame::{Axes, axes_angles};
+use super::model::{Model, residuals};
 use crate::diagnosis::answer::FoundEffect;
 use crate::diagnosis::answer::account::{Account, SectionKind};
 use crate::diagnosis::answer::statements::TRUSTED;
@@ -162,14 +160,6 @@ fn controller(found: &Found<'_>, effects: &[FoundEffect]) -> Vec<String> {
         ));
     }
     all
-}
-
-/// Roll, pitch and yaw of axes in which readings are these times what they were.
-#[must_use]
-pub fn axes_angles(turn: nalgebra::Matrix3<f64>) -> [f64; 3] {
-    let axes = Rotation3::from_matrix_unchecked(turn.transpose());
-    let (roll, pitch, yaw) = axes.euler_angles();
-    [roll, pitch, yaw]
 }
 
 /// What is left, as declared and as found.

@@ -1,10 +1,10 @@
 //! Effects of a diagnosis of still postures, by their names and numbers, and how sure each is.
 
-use super::diagnosed::Found;
 use super::estimate::{Interval, numbers};
 use super::fit::fit;
+use super::found::Found;
 use super::frame::{Frame, Turn};
-use super::model::Bounded;
+use super::nominal::Bounded;
 use super::select::SUREST;
 use crate::diagnosis::answer::details::IdentifiedNumber;
 use crate::diagnosis::answer::estimate::Estimate;

@@ -3,36 +3,19 @@
 use super::account::account;
 use super::answer::{alternatives, effects, identified};
 use super::estimate::{Numbers, numbers};
-use super::fit::{Fit, fit};
+use super::fit::fit;
+use super::found::{Found, PosturesInput};
 use super::frame::{Frame, Turn};
-use super::model::{Model, Nominal};
-use super::select::{Candidate, candidates};
+use super::model::{Model, WRENCH_COLUMNS, residuals};
+use super::select::candidates;
 use super::{Posture, StillRecording};
 use crate::diagnosis::answer::details::{ChannelMisfit, ChannelNoise, DETAILS_SCHEMA, Details};
 use crate::diagnosis::answer::{Answer, Extent, SCHEMA, Verdict};
 use crate::diagnosis::difference::localise::{robust_rms, root_mean_square};
 use crate::effects::UNLISTED;
 
-/// Channels of a wrench, as their columns are called.
-pub const WRENCH_COLUMNS: [&str; 6] = [
-    "force_x_n",
-    "force_y_n",
-    "force_z_n",
-    "torque_x_n_m",
-    "torque_y_n_m",
-    "torque_z_n_m",
-];
 /// What is left of forces or torques, over their noise, up to which they are explained [1].
 const EXPLAINED: f64 = 1.3;
-
-/// What is diagnosed.
-#[derive(Debug, Clone)]
-pub struct PosturesInput {
-    /// Sensor and tool by their nominal values.
-    pub nominal: Nominal,
-    /// Recordings to diagnose from.
-    pub recordings: Vec<StillRecording>,
-}
 
 /// What was found.
 pub struct PosturesDiagnosis {
@@ -44,34 +27,6 @@ pub struct PosturesDiagnosis {
     pub found: Model,
     /// The numbers of it.
     pub numbers: Numbers,
-}
-
-/// What the answer is made of.
-pub(super) struct Found<'a> {
-    pub input: &'a PosturesInput,
-    /// All postures.
-    pub postures: Vec<Posture>,
-    /// The likeliest first.
-    pub candidates: Vec<Candidate>,
-    /// Of the likeliest.
-    pub numbers: Numbers,
-    /// The fit in the declared axes.
-    pub as_declared: Fit,
-}
-
-impl Found<'_> {
-    pub fn best(&self) -> &Candidate {
-        &self.candidates[0]
-    }
-
-    /// Whether the readings are what they are declared to be.
-    pub fn is_as_declared(&self, frame: &Frame) -> bool {
-        *frame
-            == Frame {
-                turn: Turn::None,
-                ..self.input.nominal.frame
-            }
-    }
 }
 
 /// Diagnoses; none where the postures do not determine the numbers.
@@ -160,24 +115,6 @@ fn noise(found: &Found<'_>) -> Vec<ChannelNoise> {
             shown: Vec::new(),
         })
         .collect()
-}
-
-/// Readings less what a description says of them, by channel.
-#[must_use]
-pub fn residuals(postures: &[Posture], model: &Model) -> [Vec<f64>; 6] {
-    let left: Vec<[f64; 6]> = postures
-        .iter()
-        .map(|posture| {
-            let [force, torque] = model.reads(&posture.base_from_sensor);
-            let force = posture.force - force;
-            let torque = posture.torque.map(|read| read - torque);
-            std::array::from_fn(|i| match i {
-                0..3 => force[i],
-                _ => torque.map_or(f64::NAN, |torque| torque[i - 3]),
-            })
-        })
-        .collect();
-    std::array::from_fn(|i| left.iter().map(|left| left[i]).collect())
 }
 
 /// What descriptions leave of each channel; over what is left of its kind where the noise is not known.

@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector, Rotation3, Vector3};
 
 use super::Posture;
 use super::fit::Fit;
-use super::model::Nominal;
+use super::nominal::Nominal;
 use crate::stats::student_95;
 
 /// Fewest postures that one can be left out of.

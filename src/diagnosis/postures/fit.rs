@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, Rotation3, Vector3};
 
 use super::Posture;
 use super::frame::{Axes, Frame, Turn};
-use super::model::Nominal;
+use super::nominal::Nominal;
 
 /// Numbers of zero, weight and centre.
 pub(super) const NUMBERS: usize = 12;

@@ -180,3 +180,11 @@ impl Turn {
         }
     }
 }
+
+/// Roll, pitch and yaw of axes in which readings are these times what they were.
+#[must_use]
+pub fn axes_angles(turn: Matrix3<f64>) -> [f64; 3] {
+    let axes = Rotation3::from_matrix_unchecked(turn.transpose());
+    let (roll, pitch, yaw) = axes.euler_angles();
+    [roll, pitch, yaw]
+}

@@ -15,13 +15,13 @@ mod answer;
 pub mod diagnosed;
 pub mod estimate;
 pub mod fit;
+pub mod found;
 pub mod frame;
 pub mod model;
+pub mod nominal;
 pub mod select;
 #[cfg(test)]
 mod tests;
-
-pub use account::axes_angles;
 
 use nalgebra::{Matrix3, Vector3};
 

@@ -1,75 +1,21 @@
-//! A wrench sensor with what hangs on it: as it is declared, and what it reads by a description.
+//! What a wrench sensor reads by a description.
 
 use nalgebra::{Matrix3, Vector3};
 
+use super::Posture;
 use super::fit::Fit;
 use super::frame::{Axes, Frame};
+use super::nominal::{Bounded, Nominal};
 
-/// A declared number and the box in which the truth lies [SI].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bounded {
-    /// The number.
-    pub value: f64,
-    /// Least value.
-    pub low: f64,
-    /// Largest value.
-    pub high: f64,
-}
-
-impl Bounded {
-    /// Half the width of the box.
-    #[must_use]
-    pub fn half_width(&self) -> f64 {
-        0.5 * (self.high - self.low)
-    }
-
-    /// Distance of a value from the box.
-    #[must_use]
-    pub fn beyond(&self, value: f64) -> f64 {
-        (value - self.high).max(self.low - value).max(0.0)
-    }
-}
-
-/// Declared numbers, those that are.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Declared {
-    /// Mass of all beyond the sensor [kg].
-    pub mass: Option<Bounded>,
-    /// Its centre from the sensor's origin, in the axes of its link [m].
-    pub centre: Option<[Bounded; 3]>,
-    /// Forces that are read without a load, in the sensor's axes [N].
-    pub zero: Option<[Bounded; 3]>,
-    /// Torques that are [N m].
-    pub torque_zero: Option<[Bounded; 3]>,
-}
-
-impl Declared {
-    /// Whether nothing is declared.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        *self == Self::default()
-    }
-}
-
-/// Gravity and sensor by their nominal values.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Nominal {
-    /// What the readings are; their turn is `axes_turn`.
-    pub frame: Frame,
-    /// Readings in the declared axes are these times what they are in those of link or base.
-    pub axes_turn: Matrix3<f64>,
-    /// How far the axes may be turned against that [rad].
-    pub turn: f64,
-    /// Gravity in the base's axes [m/s2].
-    pub gravity: Vector3<f64>,
-    /// How far the weight may lie from it [rad].
-    pub tilt: f64,
-    /// Noise of a force [N] and of a torque [N m]; 0: not known.
-    pub noise: [f64; 2],
-    /// Declared numbers.
-    pub declared: Declared,
-}
-
+/// Channels of a wrench, as their columns are called.
+pub const WRENCH_COLUMNS: [&str; 6] = [
+    "force_x_n",
+    "force_y_n",
+    "force_z_n",
+    "torque_x_n_m",
+    "torque_y_n_m",
+    "torque_z_n_m",
+];
 /// A description by which a sensor's readings are predicted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Model {
@@ -143,4 +89,22 @@ impl Model {
             Axes::Base => std::array::from_fn(|i| self.turn * pose * (own[i] + zeros[i])),
         }
     }
+}
+
+/// Readings less what a description says of them, by channel.
+#[must_use]
+pub fn residuals(postures: &[Posture], model: &Model) -> [Vec<f64>; 6] {
+    let left: Vec<[f64; 6]> = postures
+        .iter()
+        .map(|posture| {
+            let [force, torque] = model.reads(&posture.base_from_sensor);
+            let force = posture.force - force;
+            let torque = posture.torque.map(|read| read - torque);
+            std::array::from_fn(|i| match i {
+                0..3 => force[i],
+                _ => torque.map_or(f64::NAN, |torque| torque[i - 3]),
+            })
+        })
+        .collect();
+    std::array::from_fn(|i| left.iter().map(|left| left[i]).collect())
 }

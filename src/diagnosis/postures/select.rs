@@ -8,7 +8,7 @@ use super::Posture;
 use super::estimate::numbers;
 use super::fit::{Fit, fit};
 use super::frame::{Frame, Turn};
-use super::model::{Bounded, Nominal};
+use super::nominal::{Bounded, Nominal};
 
 /// Share of bases that stand tilted anyhow [1].
 const TILTED: f64 = 0.05;

@@ -1,9 +1,10 @@
 use nalgebra::{Matrix3, Quaternion, Rotation3, UnitQuaternion, Vector3};
 
-use super::diagnosed::{PosturesInput, diagnose};
+use super::diagnosed::diagnose;
 use super::estimate::numbers;
+use super::found::PosturesInput;
 use super::frame::{Axes, Frame, Turn};
-use super::model::{Bounded, Declared, Nominal};
+use super::nominal::{Bounded, Declared, Nominal};
 use super::select::candidates;
 use super::{Posture, StillRecording, least_turn};
 use crate::diagnosis::answer::statements::contradictions;
@@ -268,4 +269,21 @@ fn without_torques_what_rests_on_the_tilt_alone_is_said() {
         .collect();
     assert!(keys.contains(&"tool_mass_kg") && !keys.contains(&"tool_centre_x_m"));
     assert_eq!(names(&forces(Axes::Sensor)), [""; 0]);
+}
+
+#[test]
+fn a_base_that_leans_is_named_with_roll_and_pitch() {
+    // A base that rolls and pitches has gravity turned the other way.
+    let leaning = Rotation3::from_euler_angles(0.2, -0.1, 0.0).inverse();
+    let mut postures = planted(6, Axes::Sensor, 0.0, false, 1.0);
+    for posture in &mut postures {
+        posture.base_from_sensor = leaning * posture.base_from_sensor;
+    }
+    let found = answer(postures, &nominal());
+    assert_eq!(names(&found), ["base_tilt"]);
+    let numbers = &found.effects[0].parameters;
+    for ((_, number), truth) in numbers.iter().zip([0.2, -0.1]) {
+        assert!(number.low <= truth && truth <= number.high, "{number:?}");
+        assert!(number.high - number.low < 0.05, "{number:?}");
+    }
 }
