@@ -44,6 +44,7 @@ mod paper_page;
 mod parts;
 mod planted;
 mod pointed;
+mod postures;
 mod predict;
 mod program;
 mod real_robots;

@@ -9,10 +9,11 @@ use crate::common::project;
 
 /// Set, the schemas are written anew.
 const UPDATE: &str = "IDC_UPDATE_SCHEMAS";
-const KINDS: [&str; 7] = [
+const KINDS: [&str; 8] = [
     "scenario",
     "rig",
     "arm",
+    "postures",
     "import",
     "study",
     "device",
@@ -98,6 +99,7 @@ fn shipped(kind: &str) -> Vec<PathBuf> {
             .concat()
         }
         "arm" => one("tests/recorded_arm.toml"),
+        "postures" => one("assets/new/postures.toml"),
         "import" => [
             tomls("assets/import"),
             one("assets/new/import.toml"),
@@ -269,6 +271,18 @@ fn slips_of_the_pen_are_not() {
             "link_mass_tolerance = 3",
         ),
         (
+            "postures",
+            "assets/new/postures.toml",
+            "axes = \"sensor\"",
+            "axes = \"tool\"",
+        ),
+        (
+            "postures",
+            "assets/new/postures.toml",
+            "tool_mass_kg",
+            "tool_weight_kg",
+        ),
+        (
             "removal_table",
             "assets/new/removal_table.toml",
             "fit = ",
@@ -345,6 +359,7 @@ fn keys_are_described() {
         ("cell", &scenario["else"]["else"]),
         ("bench", &scenario["then"]),
         ("arm", &printed("arm")),
+        ("postures", &printed("postures")),
         ("import", &printed("import")),
         ("study", &printed("study")),
         ("removal_table", &printed("removal_table")),

@@ -3,6 +3,7 @@
 mod arm;
 mod bench;
 mod cell;
+mod postures;
 mod removal_table;
 mod report;
 mod rig;
@@ -17,9 +18,10 @@ use super::advice::AdviceArguments;
 use super::error::{AppError, ExitCode};
 use super::files::{OverwritePolicy, prepare_file};
 use super::output::say;
-use crate::case::{RIG, is_arm_case};
+use crate::case::{POSTURES, RIG, is_arm_case, is_postures_case};
 use crate::recording::atomic::write_text;
 use crate::scenario::arm_file::is_arm_file;
+use crate::scenario::postures_file::is_postures_file;
 use crate::scenario::removal_table::is_removal_table;
 use crate::scenario::{self, AnyScenario, ScenarioError, ScenarioTemplate};
 
@@ -99,6 +101,9 @@ fn explained(file: &Path) -> Result<Report, AppError> {
         if is_arm_case(file) {
             return arm::case(file);
         }
+        if is_postures_case(file) {
+            return postures::postures(&file.join(POSTURES), file);
+        }
         return rig::case(file);
     }
     if file
@@ -135,6 +140,9 @@ fn explained(file: &Path) -> Result<Report, AppError> {
     }
     if is_removal_table(file) {
         return removal_table::removal_table(file);
+    }
+    if is_postures_file(file) {
+        return postures::postures(file, file);
     }
     if is_arm_file(file) {
         return arm::arm(file);

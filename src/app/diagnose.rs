@@ -8,6 +8,7 @@ mod fit_picture;
 mod flange_picture;
 mod one;
 mod outputs;
+mod postures_picture;
 mod removal_picture;
 mod shared;
 mod stages;
@@ -35,7 +36,7 @@ use stages::Stages;
 
 #[derive(Debug, Args)]
 pub(super) struct DiagnoseArguments {
-    /// Folder with rig.toml or arm.toml and the recordings that it names; with --all, a folder of such folders.
+    /// Folder with rig.toml, arm.toml or postures.toml and the recordings that it names; with --all, a folder of such folders.
     case: PathBuf,
     /// Folder for diagnosis.json, prediction.csv, improved.toml and account.txt [default: runs/<name of the case's folder>].
     #[arg(long, help_heading = "Output")]
@@ -43,7 +44,7 @@ pub(super) struct DiagnoseArguments {
     /// Scenario file of a recorded cell (kind = "recorded_cell"): cases then hold recordings alone, and one without measured columns is to be predicted.
     #[arg(long)]
     scenario: Option<PathBuf>,
-    /// Diagnose every folder in it that holds a rig.toml or an arm.toml, each into a folder of its name, and state what they show together of parts that they share.
+    /// Diagnose every folder in it that holds a rig.toml, an arm.toml or a postures.toml, each into a folder of its name, and state what they show together of parts that they share.
     #[arg(long)]
     all: bool,
     /// Go on where it was stopped: what has been diagnosed already is left as it is.

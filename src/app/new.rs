@@ -11,7 +11,7 @@ use clap::{Args, ValueEnum};
 use super::error::{AppError, ExitCode};
 use super::files::{OverwritePolicy, prepare_file};
 use super::output::say;
-use crate::case::RIG;
+use crate::case::{POSTURES, RIG};
 use crate::import::{Draft, draft};
 use crate::recording::atomic::write_atomic;
 use crate::scenario::removal_table::REMOVAL_TABLE;
@@ -34,6 +34,8 @@ Examples:
   # Runs of a tool and what it took off, with a table beside it.
   idc new removal_table runs/mine/belt/rig.toml
   idc diagnose runs/mine/belt --out runs/mine/belt_found
+  # Still postures of a wrench sensor, with a table beside it.
+  idc new postures runs/mine/wrist/postures.toml
   # An import map by looking at logs: what it tells of them and how sure it is
   # stands in its comments, and what it asks for.
   idc new import runs/mine/looked.toml --from assets/first/stairs.csv
@@ -44,10 +46,11 @@ Examples:
 
 /// Where a template names the folder of models.
 const MODELS: &str = "MODELS";
-/// Where a template names a table of runs.
+/// Where a template names a table.
 const TABLE: &str = "TABLE";
-/// Rows of such a table.
+/// Rows of a table of runs, and of one of postures.
 const RUNS: &[u8] = include_bytes!("../../assets/new/removal_runs.csv");
+const STILLS: &[u8] = include_bytes!("../../assets/new/stills.csv");
 /// Files that a cell needs.
 const BESIDE: [(&str, &[u8]); 3] = [
     ("arm10.urdf", include_bytes!("../../models/arm/arm10.urdf")),
@@ -101,6 +104,8 @@ enum Kind {
     Rig,
     /// A recorded arm: links by its URDF, drives, load and sensors.
     Arm,
+    /// Still postures of a wrench sensor.
+    Postures,
     /// An import map: what the columns of a log are.
     Import,
     /// A table of runs: what a tool took off at which settings.
@@ -114,6 +119,7 @@ impl Kind {
             Self::Cell => "cell",
             Self::Rig => "rig",
             Self::Arm => "arm",
+            Self::Postures => "postures",
             Self::Import => "import",
             Self::RemovalTable => REMOVAL_TABLE,
         }
@@ -125,6 +131,7 @@ impl Kind {
             Self::Rig => include_str!("../../assets/new/rig.toml"),
             // Made of its URDF.
             Self::Arm => "",
+            Self::Postures => include_str!("../../assets/new/postures.toml"),
             Self::Import => include_str!("../../assets/new/import.toml"),
             Self::RemovalTable => include_str!("../../assets/new/removal_table.toml"),
         }
@@ -136,14 +143,17 @@ impl Kind {
             .parent()
             .filter(|folder| !folder.as_os_str().is_empty());
         let folder = word(folder.unwrap_or(Path::new(".")));
-        let is_case = file.ends_with(RIG);
+        let is_case = file.ends_with(match self {
+            Self::Postures => POSTURES,
+            _ => RIG,
+        });
         let file = word(file);
         match self {
             Self::Cell => format!("idc run {file}"),
             Self::Rig | Self::Arm => format!("idc check {file}"),
             Self::Import => format!("idc import {file} LOG.csv"),
-            Self::RemovalTable if is_case => format!("idc diagnose {folder}"),
-            Self::RemovalTable => format!("idc check {file}"),
+            Self::RemovalTable | Self::Postures if is_case => format!("idc diagnose {folder}"),
+            Self::RemovalTable | Self::Postures => format!("idc check {file}"),
         }
     }
 }
@@ -355,7 +365,10 @@ fn with_own(
 fn files(kind: Kind, file: &Path) -> Files {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy();
     let models = format!("{stem}_models");
-    let runs = format!("{stem}_runs.csv");
+    let runs = match kind {
+        Kind::Postures => format!("{stem}_stills.csv"),
+        _ => format!("{stem}_runs.csv"),
+    };
     let text = kind.template().replace(MODELS, &models);
     let text = text.replace(TABLE, &runs);
     let mut files = vec![(file.to_owned(), text.into_bytes())];
@@ -367,7 +380,10 @@ fn files(kind: Kind, file: &Path) -> Files {
             }));
     }
     if matches!(kind, Kind::RemovalTable) {
-        files.push((file.with_file_name(runs), RUNS.to_vec()));
+        files.push((file.with_file_name(&runs), RUNS.to_vec()));
+    }
+    if matches!(kind, Kind::Postures) {
+        files.push((file.with_file_name(&runs), STILLS.to_vec()));
     }
     files
 }
@@ -375,7 +391,7 @@ fn files(kind: Kind, file: &Path) -> Files {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::case::RemovalCase;
+    use crate::case::{PosturesCase, RemovalCase};
     use crate::cell::Cell;
     use crate::import::load_map;
     use crate::scenario::load;
@@ -404,5 +420,8 @@ mod tests {
         let (_folder, file) = written(Kind::RemovalTable);
         let case = RemovalCase::from_file(&file, String::new()).unwrap();
         assert_eq!((case.rows.len(), case.unseen.len()), (24, 0));
+        let (_folder, file) = written(Kind::Postures);
+        let case = PosturesCase::from_file(&file).unwrap();
+        assert_eq!(case.input.recordings[0].postures.len(), 12);
     }
 }

@@ -12,8 +12,8 @@ use super::files::{OverwritePolicy, is_same, prepare_file};
 use super::output::say;
 use super::progress;
 use crate::case::{
-    check_finite, predict_arm, predict_flange_run, predict_table, predicted_by, read_rig,
-    shown_columns,
+    check_finite, predict_arm, predict_flange_run, predict_postures, predict_table, predicted_by,
+    read_rig, shown_columns,
 };
 use crate::diagnosis::answer::details::UnknownGround;
 use crate::diagnosis::answer::words::of_column;
@@ -26,12 +26,13 @@ use crate::quantity::{counted, significant};
 use crate::recording::atomic::write_text;
 use crate::recording::csv::columns_text;
 use crate::scenario::arm_file::{ArmFile, is_arm_file, load_arm_file};
+use crate::scenario::postures_file::is_postures_file;
 use crate::scenario::removal_table::is_removal_table;
 use crate::scenario::rig_file::{RigFile, load_rig};
 
 #[derive(Debug, Args)]
 pub(super) struct PredictArguments {
-    /// Rig file, or file of a recorded arm.
+    /// Rig file, file of a recorded arm, or of still postures.
     rig: PathBuf,
     /// Recordings whose inputs drive the rig; what they hold of measured columns is compared.
     #[arg(required = true, value_name = "INPUTS")]
@@ -68,6 +69,9 @@ pub(super) fn predict(arguments: &PredictArguments) -> Result<ExitCode, AppError
     let all = arguments.inputs.iter().zip(outs);
     let made: Vec<Made> = if is_removal_table(&arguments.rig) {
         let made = all.map(|(inputs, out)| of_table(&arguments.rig, inputs, out));
+        made.collect::<Result<_, _>>()?
+    } else if is_postures_file(&arguments.rig) {
+        let made = all.map(|(inputs, out)| of_postures(&arguments.rig, inputs, out));
         made.collect::<Result<_, _>>()?
     } else if is_arm_file(&arguments.rig) {
         let arm = load_arm_file(&arguments.rig)?;
@@ -298,6 +302,36 @@ fn of_table(rig: &Path, inputs: &Path, out: PathBuf) -> Result<Made, AppError> {
             "rms_of_log_volume": left.log,
         }),
         csv,
+        out,
+    })
+}
+
+/// Predicts what a wrench sensor reads in still postures.
+fn of_postures(file: &Path, inputs: &Path, out: PathBuf) -> Result<Made, AppError> {
+    let predicted = predict_postures(file, inputs)?;
+    let mut said = String::new();
+    for (column, rms) in &predicted.off {
+        let (_, unit, factor) = of_column(column);
+        // Writing into a text cannot fail.
+        let _ = writeln!(
+            said,
+            "{column:<24} measured less predicted: RMS {} {unit}",
+            significant(factor * rms, 3)
+        );
+    }
+    let postures = counted(predicted.postures, "posture");
+    let _ = writeln!(said, "{postures} written to {}", out.display());
+    let rms: BTreeMap<&str, f64> = predicted.off.into_iter().collect();
+    Ok(Made {
+        document: serde_json::json!({
+            "postures_file": file.display().to_string(),
+            "inputs": inputs.display().to_string(),
+            "prediction": out.display().to_string(),
+            "postures": predicted.postures,
+            "rms": rms,
+        }),
+        csv: predicted.csv,
+        said,
         out,
     })
 }

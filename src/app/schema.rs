@@ -38,6 +38,8 @@ enum File {
     Rig,
     /// A recorded arm.
     Arm,
+    /// Still postures of a wrench sensor.
+    Postures,
     /// An import map.
     Import,
     /// A design study.
@@ -55,6 +57,7 @@ impl File {
             Self::Scenario => with_metrics(scenario::schema::scenario()),
             Self::Rig => scenario::schema::rig(),
             Self::Arm => scenario::arm_file::schema(),
+            Self::Postures => scenario::postures_file::schema(),
             Self::Import => import::map_file::schema(),
             Self::Study => design::schema(),
             Self::Device => scenario::schema::device(),

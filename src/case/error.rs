@@ -103,11 +103,87 @@ pub enum CaseError {
     },
     /// A folder without a rig file.
     #[error(
-        "{folder} holds no rig.toml or arm.toml; expected a folder with one and the recordings that it names (--all takes a folder of such folders)"
+        "{folder} holds no rig.toml, arm.toml or postures.toml; expected a folder with one and the recordings that it names (--all takes a folder of such folders)"
     )]
     NoRig {
         /// The folder.
         folder: String,
+    },
+    /// Still postures of a wrench sensor without their file.
+    #[error(
+        "{folder} holds no rig.toml, arm.toml or postures.toml; {table} looks like still postures of a wrench sensor: expected a postures.toml beside it with schema = 1, kind = \"wrench_postures\" and [recordings] fit = [{table:?}], all else as far as it is known (`idc new postures` writes one with every key)"
+    )]
+    PosturesUnstated {
+        /// The folder.
+        folder: String,
+        /// The table.
+        table: String,
+    },
+    /// Too few postures.
+    #[error(
+        "{file}: {found} postures are too few to tell zero from weight, expected at least {least} that turn the sensor about two axes"
+    )]
+    FewPostures {
+        /// The file.
+        file: String,
+        /// Postures.
+        found: usize,
+        /// Least number.
+        least: usize,
+    },
+    /// Postures that turn the sensor about one axis.
+    #[error(
+        "{file}: beside one axis its postures turn the sensor by {degrees:.2} degrees RMS, in which zero and weight look alike; expected 3 at least: record postures that lean about two axes"
+    )]
+    NotTurned {
+        /// The file.
+        file: String,
+        /// The turn [degrees].
+        degrees: f64,
+    },
+    /// A posture without a value.
+    #[error(
+        "{file}: line {line}: `{column}` is empty, expected a number; leave out rows without a reading"
+    )]
+    NoReading {
+        /// The table.
+        file: String,
+        /// Its line, from 1.
+        line: u64,
+        /// The column.
+        column: String,
+    },
+    /// A quaternion that is none.
+    #[error(
+        "{file}: line {line}: the quaternion has a norm of {norm:.3}, expected 1, of a pose as x, y, z, w ([columns] of the file says which columns hold them)"
+    )]
+    NoRotation {
+        /// The table.
+        file: String,
+        /// Its line, from 1.
+        line: u64,
+        /// Its norm.
+        norm: f64,
+    },
+    /// Torques in a smaller unit.
+    #[error(
+        "{file}: its torques change as if the tool hung {lever:.0} m from the sensor, expected 5 m at most: they look like N mm (`torque_unit` in [columns]), or forces like kN (`force_unit`)"
+    )]
+    LongLever {
+        /// The file.
+        file: String,
+        /// The lever [m].
+        lever: f64,
+    },
+    /// A file of postures that cannot predict.
+    #[error(
+        "{file}: `wrench_sensor.{key}` is missing, expected it to be given where readings are to be predicted (improved.toml of a diagnosis has it)"
+    )]
+    NotDeclared {
+        /// The file.
+        file: String,
+        /// The key.
+        key: &'static str,
     },
     /// A rig file that names nothing to diagnose from.
     #[error("{file}: `recordings.fit` names no recording, expected the files to diagnose from")]

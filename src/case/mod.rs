@@ -11,9 +11,11 @@ mod error;
 mod flange_prediction;
 mod ground;
 mod improved;
+mod postures;
 mod recordings;
 mod removal_table;
 mod rig;
+mod stills;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -25,6 +27,10 @@ pub use cell::is_cell_case;
 pub use diagnosed::{Diagnosed, IMPROVED};
 pub use error::CaseError;
 pub use flange_prediction::{FlangePrediction, predict_flange_run};
+pub use postures::{
+    POSTURES, PosturesCase, PosturesDiagnosed, PosturesPrediction, is_postures_case,
+    predict_postures,
+};
 pub use recordings::{check_finite, read_in_any_unit, read_rig, shown_columns};
 pub use removal_table::{RemovalCase, RemovalDiagnosed, predict_table};
 pub use rig::{RIG, rig_of, to_fit};

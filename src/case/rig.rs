@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::error::CaseError;
 use super::recordings::{read_in_any_unit, read_rig};
+use super::stills::stills_in;
 use crate::diagnosis::data_fault::take_off;
 use crate::diagnosis::flange::{ForceRamp, NoContact, Run, RunMetrics};
 use crate::diagnosis::recordings::input::{DiagnosisInput, NamedRecording, of_link, tolerated};
@@ -21,6 +22,12 @@ pub const RIG: &str = "rig.toml";
 /// A folder without one, one without recordings, or what is wrong with the file.
 pub fn rig_of(folder: &Path) -> Result<RigFile, CaseError> {
     if !folder.join(RIG).is_file() {
+        if let Some(table) = stills_in(folder) {
+            return Err(CaseError::PosturesUnstated {
+                folder: folder.display().to_string(),
+                table,
+            });
+        }
         return Err(CaseError::NoRig {
             folder: folder.display().to_string(),
         });

@@ -11,6 +11,7 @@ pub mod fit;
 pub mod flange;
 pub mod formula;
 pub mod joints;
+pub mod postures;
 pub mod recordings;
 pub mod removal;
 pub mod search;

@@ -25,7 +25,7 @@ pub use edge_profile::EdgeProfile;
 #[cfg(feature = "parquet")]
 pub(super) use log::no_stamps;
 pub use log::{Log, read_log_csv};
-pub use named::{NamedColumns, read_named};
+pub use named::{NamedColumns, header_of, read_named};
 
 /// A recording with what its file holds besides.
 #[derive(Debug, Clone, PartialEq)]

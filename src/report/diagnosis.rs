@@ -1,7 +1,9 @@
 //! The page of a diagnosis.
 
 use super::diagnosis_charts::{balance, channel, origin, unlisted};
-use super::diagnosis_tables::{detectable, how_well, own_numbers, paragraphs, ruled_out};
+use super::diagnosis_tables::{
+    detectable, how_well, identified, own_numbers, paragraphs, ruled_out,
+};
 use super::provenance::provenance;
 use crate::diagnosis::answer::account::SectionKind;
 use crate::diagnosis::answer::details::remaining_errors;
@@ -52,6 +54,7 @@ pub fn diagnosis<'a>(answer: &Answer, comparison: &'a Comparison) -> Document<'a
         balances(comparison),
         how_well(answer),
         detectable(answer),
+        identified(answer),
         own_numbers(answer),
         ruled_out(answer),
     ];

@@ -3,7 +3,8 @@
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::answer::account::SectionKind;
 use crate::diagnosis::answer::details::{
-    ChannelMisfit, Considered, DetectableReport, PredictionError, RuledOutReport, ToleratedNumber,
+    ChannelMisfit, Considered, DetectableReport, IdentifiedNumber, PredictionError, RuledOutReport,
+    ToleratedNumber,
 };
 use crate::diagnosis::answer::estimate::Limit;
 use crate::diagnosis::answer::words::{display_name, odds, of_column, percent, reference_noise};
@@ -149,6 +150,32 @@ pub(super) fn own_numbers<'a>(answer: &Answer) -> Option<Section<'a>> {
     let blocks = words.chain((!tolerated.is_empty()).then_some(Block::Table(table)));
     let blocks: Vec<Block<'a>> = blocks.collect();
     (!blocks.is_empty()).then(|| Section::new("The rig's own numbers", blocks))
+}
+
+/// Numbers of a sensor and its tool.
+pub(super) fn identified<'a>(answer: &Answer) -> Option<Section<'a>> {
+    let row = |(index, number): (usize, &IdentifiedNumber)| {
+        let (words, unit, factor) = display_name(&number.key);
+        let shown = |key: &str, value: f64| {
+            let key = format!("identified.{index}.found.{key}");
+            Cell::from(Number::bare(&key, None, "").written(significant(factor * value, 4)))
+        };
+        let found = number.found;
+        vec![
+            Cell::from(words),
+            shown("value", found.value),
+            shown("low", found.low),
+            shown("high", found.high),
+            Cell::from(unit),
+        ]
+    };
+    let all = &answer.details.identified;
+    let table = Table::new(
+        "Numbers of sensor and tool, with their 95 % intervals.",
+        Column::list("number | #value | #low | #high | unit"),
+        all.iter().enumerate().map(row).collect(),
+    );
+    (!all.is_empty()).then(|| Section::new("What was identified", vec![Block::Table(table)]))
 }
 
 pub(super) fn ruled_out<'a>(answer: &Answer) -> Option<Section<'a>> {

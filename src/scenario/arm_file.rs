@@ -19,7 +19,6 @@ mod noise;
 mod order;
 #[cfg(test)]
 mod tests;
-mod toleranced;
 mod values;
 
 use std::path::{Path, PathBuf};

@@ -15,6 +15,7 @@ pub mod effects;
 mod estimator;
 mod file;
 mod load;
+pub mod postures_file;
 pub mod recorded_cell;
 pub mod removal_table;
 mod rig_device;
@@ -24,6 +25,7 @@ pub(crate) mod sections;
 mod sensing;
 #[cfg(test)]
 mod tests;
+mod toleranced;
 mod tool;
 mod variation;
 mod workpiece;

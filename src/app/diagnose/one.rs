@@ -8,10 +8,12 @@ use super::cell_scene::{Drawn, cell_scene};
 use super::fit_picture;
 use super::flange_picture;
 use super::outputs::{Finished, NAMES, Outputs, is_complete};
+use super::postures_picture;
 use super::removal_picture;
 use super::unlisted_picture::picture;
 use crate::case::{
-    Case, Diagnosed, IMPROVED, RIG, RemovalCase, RemovalDiagnosed, diagnose, is_arm_case,
+    Case, Diagnosed, IMPROVED, PosturesCase, PosturesDiagnosed, RIG, RemovalCase, RemovalDiagnosed,
+    diagnose, is_arm_case, is_postures_case,
 };
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::answer::account::SectionKind;
@@ -32,6 +34,8 @@ enum Subject {
     Recordings(Box<Case>),
     /// A table of runs.
     Table(Box<RemovalCase>),
+    /// Still postures of a wrench sensor.
+    Postures(Box<PosturesCase>),
 }
 
 /// A case that can be diagnosed, and a folder that its files can go to.
@@ -43,7 +47,7 @@ pub(super) struct Prepared {
 
 /// Whether this is a folder with a case.
 pub(super) fn is_case(folder: &Path) -> bool {
-    folder.join(RIG).is_file() || is_arm_case(folder)
+    folder.join(RIG).is_file() || is_arm_case(folder) || is_postures_case(folder)
 }
 
 /// The diagnosis that stands complete in a folder.
@@ -61,13 +65,18 @@ impl Prepared {
         out: &Path,
         policy: OverwritePolicy,
     ) -> Result<Self, AppError> {
-        let subject = if cell.is_none() && is_removal_table(&folder.join(RIG)) {
-            if tried.is_some() {
-                return Err(AppError::NoLawOfTable {
-                    folder: folder.display().to_string(),
-                });
-            }
+        let is_table = cell.is_none() && is_removal_table(&folder.join(RIG));
+        let is_other = folder.join(RIG).is_file() || is_arm_case(folder);
+        let is_still = cell.is_none() && !is_other && is_postures_case(folder);
+        if (is_table || is_still) && tried.is_some() {
+            return Err(AppError::NoLawOfTable {
+                folder: folder.display().to_string(),
+            });
+        }
+        let subject = if is_table {
             Subject::Table(Box::new(RemovalCase::from_folder(folder)?))
+        } else if is_still {
+            Subject::Postures(Box::new(PosturesCase::from_folder(folder)?))
         } else {
             let mut case = match cell {
                 Some(cell) => Case::of_cell(folder, cell)?,
@@ -103,6 +112,7 @@ impl Prepared {
         match &self.subject {
             Subject::Recordings(case) => self.of_recordings(case, observer),
             Subject::Table(case) => self.of_table(case),
+            Subject::Postures(case) => self.of_postures(case),
         }
     }
 
@@ -127,6 +137,31 @@ impl Prepared {
             prediction: prediction.as_deref(),
             picture: None,
             fit_picture: Some(&picture),
+            scene: None,
+            comparison: &Comparison::default(),
+        };
+        outputs.write(&self.folder)
+    }
+
+    fn of_postures(&self, case: &PosturesCase) -> Result<Finished, AppError> {
+        let PosturesDiagnosed {
+            mut answer,
+            improved,
+            prediction,
+            left,
+        } = case.diagnose()?;
+        let file = word(&self.folder.path().join(IMPROVED));
+        let how = format!(
+            "`idc predict {file} TABLE.csv` predicts what the sensor reads in other postures, with what was found."
+        );
+        answer.details.account.add(SectionKind::HowToRun, vec![how]);
+        let picture = answer.kept("fit.svg", postures_picture::picture(&left));
+        let outputs = Outputs {
+            answer,
+            improved: &improved,
+            prediction: prediction.as_deref(),
+            picture: None,
+            fit_picture: picture.as_deref(),
             scene: None,
             comparison: &Comparison::default(),
         };

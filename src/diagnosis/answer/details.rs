@@ -79,6 +79,9 @@ pub struct Details {
     pub detectable: Vec<DetectableReport>,
     /// Numbers of the rig file within their tolerances.
     pub tolerated: Vec<ToleratedNumber>,
+    /// Numbers of a sensor and its tool, declared or not.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub identified: Vec<IdentifiedNumber>,
     /// Errors of prediction on what was not fitted to.
     pub prediction: Vec<PredictionError>,
     /// Where the prediction leaves what the recordings covered.
@@ -422,6 +425,15 @@ pub struct ToleratedNumber {
     /// The nominal value.
     #[serde(rename = "believed")]
     pub nominal: f64,
+    /// As found.
+    pub found: Estimate,
+}
+
+/// A number that a diagnosis identifies whatever is declared of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct IdentifiedNumber {
+    /// Its name with its unit.
+    pub key: String,
     /// As found.
     pub found: Estimate,
 }

@@ -14,6 +14,19 @@ pub struct NamedColumns {
     pub lines: Vec<u64>,
 }
 
+/// Names in the header of a table.
+///
+/// # Errors
+/// A file that cannot be read.
+pub fn header_of(path: &Path) -> Result<Vec<String>, RecordingError> {
+    let text = std::fs::read_to_string(path).map_err(|e| RecordingError::read(path, e))?;
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
+    let header = reader.headers().map_err(|e| fault(path, &e))?;
+    Ok(header.iter().map(str::to_owned).collect())
+}
+
 /// Reads columns by their names.
 ///
 /// # Errors

@@ -5,8 +5,8 @@ use serde::Deserialize;
 use std::path::PathBuf;
 
 use super::super::rig_file::RecordingsKeys;
+use super::super::toleranced::Toleranced;
 use super::effects::EffectTables;
-use super::toleranced::Toleranced;
 use crate::keys::declaration::{Plain, keys};
 
 impl Plain for FileKind {}

@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 
+use super::super::toleranced::{Content, Toleranced};
 use super::keys::{ArmFileKeys, DriveKeys, LinkKeys, LoadKeys, SensorsKeys, WrenchKeys};
 use super::names::Names;
 use super::noise::ArmNoise;
 use super::order::column_order;
-use super::toleranced::{Content, Toleranced};
 
 use crate::arm::{ArmOptions, load_arm};
 use crate::keys::check::{Section, plain};

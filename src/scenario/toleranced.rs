@@ -1,4 +1,4 @@
-//! A value of an arm file, one number or three, alone or with what is known of it.
+//! A value of a file of an arm or of a wrench sensor, one number or three, alone or with what is known of it.
 //!
 //! ```text
 //! key_n_m = 15.5
