@@ -3,6 +3,7 @@
 mod arm;
 mod bench;
 mod cell;
+mod identifiability;
 mod removal_table;
 mod report;
 mod rig;

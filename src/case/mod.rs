@@ -19,7 +19,10 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-pub use arm::{ARM, ArmPrediction, LogSummary, PredictedColumn, arm_of, logs_of, predict_arm};
+pub use arm::{
+    ARM, ArmLogs, ArmPrediction, LogSummary, PredictedColumn, arm_of, logs_of, predict_arm,
+    unrecorded,
+};
 pub use band::{Predicted, predicted_by};
 pub use cell::is_cell_case;
 pub use diagnosed::{Diagnosed, IMPROVED};

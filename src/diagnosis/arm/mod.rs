@@ -11,10 +11,13 @@ pub mod extent;
 pub mod fit;
 pub mod held;
 pub mod hypothesis;
+pub mod identifiability;
 pub mod input;
+pub mod inseparable;
 pub mod laws;
 pub mod pushed;
 pub mod quadratic;
+pub mod quantity_words;
 pub mod search;
 
 pub use diagnosed::{ArmDiagnosis, diagnose};
