@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::arm_recording::{ArmLog, column_of, noise_of, read};
-use super::diagnosed::{Diagnosed, IMPROVED};
+use super::diagnosed::{DRIVES, Diagnosed, IDENTIFIED, IMPROVED};
 use super::error::CaseError;
 use super::rig::names_to_fit;
 use crate::diagnosis::answer::details::{ChannelMisfit, ChannelNoise};
+use crate::diagnosis::arm::drives::drives_text;
 use crate::diagnosis::arm::input::{ArmInput, ArmRecording};
 use crate::diagnosis::arm::{ArmDiagnosis, diagnose};
 use crate::diagnosis::difference::comparison::{Compared, ComparedChannel, Comparison};
@@ -105,6 +106,7 @@ impl ArmCase {
             mut answer,
             tolerated,
             fitted,
+            drives,
         } = diagnose(&self.input, &mut |_| {});
         for note in &self.notes {
             answer.note(note.clone());
@@ -125,6 +127,9 @@ impl ArmCase {
         if answer.details.misfit.is_empty() {
             answer.details.misfit = self.misfits(&comparison);
         }
+        let mut beside = vec![(DRIVES, drives_text(&drives))];
+        let urdf = answer.kept(IDENTIFIED, self.file.identified_urdf(&model));
+        beside.extend(urdf.flatten().map(|text| (IDENTIFIED, text)));
         answer.seconds = start.elapsed().as_secs_f64();
         Ok(Diagnosed {
             answer,
@@ -133,6 +138,7 @@ impl ArmCase {
             comparison,
             diagnosis: None,
             plant: None,
+            beside,
         })
     }
 

@@ -25,7 +25,7 @@ pub use arm::{
 };
 pub use band::{Predicted, predicted_by};
 pub use cell::is_cell_case;
-pub use diagnosed::{Diagnosed, IMPROVED};
+pub use diagnosed::{DRIVES, Diagnosed, IDENTIFIED, IMPROVED};
 pub use error::CaseError;
 pub use flange_prediction::{FlangePrediction, predict_flange_run};
 pub use recordings::{check_finite, read_in_any_unit, read_rig, shown_columns};
@@ -447,6 +447,7 @@ fn of_plant(
         improved,
         diagnosis: Some(diagnosis),
         plant: Some(plant),
+        beside: Vec::new(),
     }
 }
 
@@ -536,6 +537,7 @@ fn of_flange_runs(
         comparison,
         diagnosis: None,
         plant: None,
+        beside: Vec::new(),
     })
 }
 

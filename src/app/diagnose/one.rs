@@ -125,6 +125,7 @@ impl Prepared {
             answer,
             improved: &improved,
             prediction: prediction.as_deref(),
+            beside: &[],
             picture: None,
             fit_picture: Some(&picture),
             scene: None,
@@ -147,6 +148,7 @@ impl Prepared {
             prediction,
             comparison,
             diagnosis,
+            beside,
             ..
         } = diagnosed;
         let mut fit = flange_picture::picture(&answer, &comparison);
@@ -171,6 +173,7 @@ impl Prepared {
             answer,
             improved: &improved,
             prediction: prediction.as_deref(),
+            beside: &beside,
             picture: shape.as_deref(),
             fit_picture: fit.as_deref(),
             scene: scene.flatten(),

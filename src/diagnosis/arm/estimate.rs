@@ -18,7 +18,7 @@ use crate::recorded_arm::{ArmParameters, Quantity};
 pub const HALF_WIDTH: f64 = 2.4;
 
 /// Half-width of what the form of a law leaves open, as a share of its size [1].
-const FORM: f64 = 0.04;
+pub const FORM: f64 = 0.04;
 /// The same of the beginning and end of a push, whose course is not known [s].
 const COURSE: f64 = 0.04;
 

@@ -4,6 +4,7 @@ pub mod account;
 pub mod answer;
 pub mod contact;
 pub mod diagnosed;
+pub mod drives;
 pub mod effect;
 pub mod estimate;
 pub mod evidence;
