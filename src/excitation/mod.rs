@@ -13,12 +13,13 @@ pub use limits::{
 };
 pub use search::HIGHEST;
 
+use crate::diagnosis::arm::base_parameters::base_parameters;
 use crate::diagnosis::arm::contact::touching;
 use crate::diagnosis::arm::estimate::{HALF_WIDTH, inverse_of};
 use crate::diagnosis::arm::evidence::Evidence;
 use crate::diagnosis::arm::fit::Parameter;
 use crate::diagnosis::arm::identifiability::{
-    Expected, base_parameters, curvature, expected, moved_along, randomly_moved, roughly_known,
+    Expected, curvature, expected, moved_along, randomly_moved, roughly_known,
 };
 use crate::diagnosis::arm::input::ArmInput;
 use crate::recorded_arm::fourier_path::FourierPath;

@@ -3,11 +3,10 @@
 use serde_json::{Value, json};
 
 use super::report::Report;
+use crate::diagnosis::arm::base_parameters::{BaseParameters, base_parameters};
 use crate::diagnosis::arm::contact::touching;
 use crate::diagnosis::arm::evidence::Evidence;
-use crate::diagnosis::arm::identifiability::{
-    BaseParameters, Expected, base_parameters, expected, randomly_moved,
-};
+use crate::diagnosis::arm::identifiability::{Expected, expected, randomly_moved};
 use crate::diagnosis::arm::input::ArmInput;
 use crate::diagnosis::arm::inseparable::{entangled, sentences};
 use crate::diagnosis::arm::quantity_words::named;

@@ -219,18 +219,25 @@ fn sentence(drive: &DriveNumbers) -> String {
     if let Some([_, _, gain]) = &drive.electrical {
         words.push(format!("gain {}", shown(gain, units[4])));
     }
-    let mut text = format!("{}: {}.", drive.joint, words.join(", "));
-    let held = |what: &str, found: f64, limit: f64, unit: &str| match limit.is_finite() {
-        true => format!(
-            " Its {what} reaches {} of {} {unit} that its maker allows{}.",
-            significant(found, 3),
-            significant(limit, 3),
-            if found > limit { ", beyond it" } else { "" }
+    let what = if is_prismatic { "force" } else { "torque" };
+    let held = [
+        (what, drive.largest_torque, drive.effort, units[0]),
+        ("speed", drive.largest_speed, drive.velocity, units[5]),
+    ];
+    let held: Vec<String> = { held.into_iter() }
+        .filter(|(_, found, limit, _)| *found > 0.0 && limit.is_finite())
+        .map(|(what, found, limit, unit)| {
+            let beyond = if found > limit { ", beyond it" } else { "" };
+            let [found, limit] = [found, limit].map(|value| significant(value, 3));
+            format!("{what} {found} of {limit} {unit}{beyond}")
+        })
+        .collect();
+    let text = format!("{}: {}.", drive.joint, words.join(", "));
+    match held.is_empty() {
+        true => text,
+        false => format!(
+            "{text} At most, of what its maker allows: {}.",
+            held.join(", ")
         ),
-        false => String::new(),
-    };
-    if drive.largest_torque > 0.0 {
-        text += &held("torque", drive.largest_torque, drive.effort, units[0]);
     }
-    text + &held("speed", drive.largest_speed, drive.velocity, units[5])
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use super::identifiability::{BaseParameters, Together};
+use super::base_parameters::{BaseParameters, Together};
 use super::input::ArmInput;
 use super::quantity_words::{by_owner, named, phrase};
 use crate::quantity::{capital, listed};

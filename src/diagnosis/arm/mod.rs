@@ -2,6 +2,7 @@
 
 pub mod account;
 pub mod answer;
+pub mod base_parameters;
 pub mod contact;
 pub mod diagnosed;
 pub mod drives;
