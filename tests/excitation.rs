@@ -135,7 +135,7 @@ fn a_designed_path_keeps_its_limits_and_is_the_same_each_time() {
 
 #[test]
 fn limits_without_room_are_one_message() {
-    // A box about the arm, a motor that cannot hold its link, and a file that is no arm.
+    // A box about the arm, a motor weaker than its friction, and a file that is no arm.
     let boxed = format!(
         "{ARM}\n[[obstacle]]\nname = \"crate\"\nbox_mm = [300, 300, 2000]\nposition_mm = [0, 0, 1000]\n"
     );
@@ -162,8 +162,9 @@ fn limits_without_room_are_one_message() {
     let outcome = weak.idc(&arguments, &[]);
     assert_eq!(outcome.code, 2);
     assert!(outcome.err.contains("elbow needs"), "{}", outcome.err);
-    let other = weak.idc(&["check", "cell.toml", "--design", "path.csv"], &[]);
+    let other = weak.idc(&["check", "scenario.toml", "--design", "path.csv"], &[]);
     assert_eq!(other.code, 2);
+    assert!(other.err.contains("no recorded arm"), "{}", other.err);
 }
 
 /// An arm whose numbers lie within their tolerances, but its gains, as declared.

@@ -9,8 +9,8 @@ use super::part::Part;
 use crate::arm::chain::KinematicChain;
 use crate::arm::{Arm, Visual, VisualShape};
 use crate::collision::{
-    Body, CollisionModel, ModelError, ModelRequest, Mount, RiddenEdge, Role, Solid, floor_at,
-    links_of, robot_body, standing,
+    Body, CollisionModel, ModelError, ModelRequest, Mount, RiddenEdge, Role, Solid, fixed_body,
+    floor_at, links_of, robot_body,
 };
 use crate::plant::{Nominal, PlantParameters};
 use crate::scenario::{Obstacle, ObstacleShape, Scenario};
@@ -38,7 +38,7 @@ pub(super) fn model(
             source,
         })
     })?;
-    bodies.push((Role::Part, standing("part", world_from_part, surface)));
+    bodies.push((Role::Part, fixed_body("part", world_from_part, surface)));
     for obstacle in &scenario.collision.obstacles {
         bodies.push((
             Role::Obstacle,
@@ -127,7 +127,7 @@ pub fn obstacle_body(
             Solid::surface(&mesh)
         }
     };
-    Ok(standing(name, pose, solid.map_err(refused)?))
+    Ok(fixed_body(name, pose, solid.map_err(refused)?))
 }
 
 /// The floor: where the scenario says, else through the world's origin unless something of the cell stands below it.

@@ -12,7 +12,7 @@ const FLOOR: [f64; 2] = [40.0, 1.0];
 
 /// A body that stands in the world.
 #[must_use]
-pub fn standing(name: &str, pose: DPose3, solid: Solid) -> Body {
+pub fn fixed_body(name: &str, pose: DPose3, solid: Solid) -> Body {
     Body {
         name: name.to_owned(),
         mount: Mount::World(pose),
@@ -75,5 +75,5 @@ pub fn floor_at(height: f64) -> Body {
     let [size, thickness] = FLOOR;
     let slab = Solid::cuboid(DVec3::new(size, size, thickness));
     let middle = DVec3::new(0.0, 0.0, height - 0.5 * thickness);
-    standing("floor", DPose3::from_translation(middle), slab)
+    fixed_body("floor", DPose3::from_translation(middle), slab)
 }

@@ -29,7 +29,7 @@ mod watch;
 mod tests;
 
 pub use ball::{RIDDEN_ZONE, RiddenEdge};
-pub use bodies::{floor_at, links_of, robot_body, standing};
+pub use bodies::{fixed_body, floor_at, links_of, robot_body};
 pub use body::{Body, Mount, Solid, SolidError};
 pub use model::{CollisionModel, ModelError, ModelRequest, Pair, PlacedBody, Role};
 pub use motion::JointMotion;

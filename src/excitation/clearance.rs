@@ -71,7 +71,7 @@ impl Clearance {
         let mut allowed = file.collision.allowed_pairs.clone();
         if let Some(height) = floor(file, &mut notes) {
             bodies.push((Role::Floor, floor_at(height)));
-            allowed.extend(stands_on(file, &bodies));
+            allowed.extend(first_link_on_floor(file, &bodies));
         }
         let model = CollisionModel::new(ModelRequest {
             chain: &file.nominal.chain,
@@ -157,7 +157,7 @@ fn floor(file: &ArmFile, notes: &mut Vec<String>) -> Option<f64> {
 }
 
 /// The first link and the floor, where it turns upright on it.
-fn stands_on(file: &ArmFile, bodies: &[(Role, Body)]) -> Option<[String; 2]> {
+fn first_link_on_floor(file: &ArmFile, bodies: &[(Role, Body)]) -> Option<[String; 2]> {
     let first = file.nominal.chain.joints.first()?;
     let axis = first.parent_from_joint.rotation * first.axis;
     let upright = first.kind == JointKind::Revolute && axis.z.abs() > 0.999;

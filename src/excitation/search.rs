@@ -25,7 +25,7 @@ use crate::recorded_arm::fourier_path::{FourierPath, Harmonic, JointPath};
 pub const HIGHEST: f64 = 1.0;
 /// Harmonics of a joint.
 const HARMONICS: usize = 5;
-/// Samples by which a path is judged [Hz].
+/// Samples by which a path is evaluated [Hz].
 const RATE: f64 = 4.0;
 /// Samples at which its torques are looked at [Hz].
 const TORQUES: f64 = 25.0;
@@ -47,7 +47,7 @@ struct Found {
 }
 
 /// One that is within the limits, or what it runs into.
-type Judged = Result<Found, Hindrance>;
+type Evaluated = Result<Found, Hindrance>;
 
 /// What a search works with.
 pub(super) struct Search<'a> {
@@ -64,7 +64,7 @@ impl Search<'_> {
     /// The best path that was found; what the last one ran into where every one does.
     pub fn best(&self) -> Result<FourierPath, Hindrance> {
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
-        let first = self.judged(&self.random(&mut random));
+        let first = self.evaluated(&self.random(&mut random));
         let others: Vec<FourierPath> = (1..RANDOM).map(|_| self.random(&mut random)).collect();
         let mut best = self.best_of(first, &others)?;
         let mut size = 0.5;
@@ -84,9 +84,10 @@ impl Search<'_> {
     }
 
     /// The best of a path and others, which are looked at side by side; the first of equals.
-    fn best_of(&self, first: Judged, others: &[FourierPath]) -> Judged {
-        let judged: Vec<Judged> = others.par_iter().map(|path| self.judged(path)).collect();
-        judged
+    fn best_of(&self, first: Evaluated, others: &[FourierPath]) -> Evaluated {
+        let evaluated: Vec<Evaluated> =
+            others.par_iter().map(|path| self.evaluated(path)).collect();
+        evaluated
             .into_iter()
             .fold(first, |best, next| match (best, next) {
                 (Ok(best), Ok(next)) if next.worth > best.worth => Ok(next),
@@ -96,7 +97,7 @@ impl Search<'_> {
     }
 
     /// A path as far as torque and clearance let it go, with its worth.
-    fn judged(&self, path: &FourierPath) -> Judged {
+    fn evaluated(&self, path: &FourierPath) -> Evaluated {
         let mut path = path.clone();
         let mut left = SHRINKS;
         loop {

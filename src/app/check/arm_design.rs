@@ -78,7 +78,12 @@ fn unit(kind: JointKind) -> &'static str {
 
 fn table_of(file: &ArmFile, motion: &Motion) -> Result<String, AppError> {
     let joints = file.nominal.chain.joints.iter();
-    let mut columns: Vec<(String, &[f64])> = Vec::new();
+    // Nanometres and their like are rounding.
+    let rounded = |values: &[f64]| -> Vec<f64> {
+        let nano = values.iter().map(|v| (v * 1e9).round() / 1e9 + 0.0);
+        nano.collect()
+    };
+    let mut columns: Vec<(String, Vec<f64>)> = Vec::new();
     for (ending, values) in [
         ("", &motion.position),
         ("_per_s", &motion.speed),
@@ -87,10 +92,12 @@ fn table_of(file: &ArmFile, motion: &Motion) -> Result<String, AppError> {
         let named = joints.clone().zip(values);
         columns.extend(named.map(|(joint, values)| {
             let name = format!("{}_{}{ending}", joint.name, unit(joint.kind));
-            (name, values.as_slice())
+            (name, rounded(values))
         }));
     }
-    let columns: Vec<(&str, &[f64])> = { columns.iter() }.map(|(n, v)| (n.as_str(), *v)).collect();
+    let columns: Vec<(&str, &[f64])> = { columns.iter() }
+        .map(|(n, v)| (n.as_str(), v.as_slice()))
+        .collect();
     Ok(columns_text(&motion.time, &columns)?)
 }
 
@@ -133,7 +140,7 @@ fn say(
         report.fact(
             "designed path",
             format!(
-                "half-widths of what can be told are {} of those by the recordings (median)",
+                "half-widths of the base parameters are {} of those by the recordings (median)",
                 significant(ratio, 2)
             ),
         );

@@ -19,7 +19,7 @@ pub(super) fn identifiability(report: &mut Report, input: &ArmInput) {
     let any = Evidence::of(&random, &[]);
     let structural = base_parameters(&any);
     report.fact(
-        "can be told",
+        "identifiable",
         format!(
             "{} of {} numbers of links, drives and sensors, alone or as combinations (base parameters), along a random motion within the joints' limits; condition {}",
             structural.rank,
@@ -32,7 +32,7 @@ pub(super) fn identifiability(report: &mut Report, input: &ArmInput) {
     let own = (!input.recordings.is_empty()).then(|| base_parameters(&recorded));
     if let Some(own) = &own {
         report.fact(
-            "can be told",
+            "identifiable",
             format!(
                 "{} along the recordings, {} of them closer than they are known already; condition {}",
                 own.rank,
@@ -43,14 +43,14 @@ pub(super) fn identifiability(report: &mut Report, input: &ArmInput) {
     }
     let inseparable = sentences(input, &structural);
     for sentence in &inseparable {
-        report.fact("no log tells", sentence.as_str());
+        report.fact("not identifiable", sentence.as_str());
     }
     let evidence = if own.is_some() { &recorded } else { &any };
     let (left, covariance) = expected(evidence);
     let quantities: Vec<_> = left.iter().map(|one| one.quantity).collect();
     let alike = entangled(input, &quantities, &covariance);
     for set in &alike {
-        report.fact("hardly told apart", set.as_str());
+        report.fact("hardly distinguished", set.as_str());
     }
     let motion = match own {
         Some(_) => "the recordings",
@@ -70,7 +70,7 @@ pub(super) fn identifiability(report: &mut Report, input: &ArmInput) {
                 "with": t.with.iter().map(|q| name(input, *q)).collect::<Vec<_>>(),
             })).collect::<Vec<_>>(),
             "sentences": inseparable,
-            "hardly_told_apart": alike,
+            "hardly_distinguished": alike,
             "left_of_tolerances": left.iter().map(|one| of_number(input, one)).collect::<Vec<_>>(),
         }),
     );

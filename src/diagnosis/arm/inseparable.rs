@@ -1,4 +1,4 @@
-//! What cannot be told apart, in sentences.
+//! What cannot be distinguished, in sentences.
 
 use nalgebra::DMatrix;
 
@@ -10,7 +10,7 @@ use crate::recorded_arm::Quantity;
 
 /// Partners that are all named; of more what they are of.
 const NAMED: usize = 3;
-/// Correlation of two numbers from which they can hardly be told apart [1].
+/// Correlation of two numbers from which they can hardly be distinguished [1].
 const ENTANGLED: f64 = 0.9;
 
 /// What no motion shows, and what no motion tells apart.
