@@ -292,10 +292,9 @@ fn check_limits(truth: &ArmParameters, path: &Motion) {
     let rigid = RigidCourse::of(&arm, path);
     let torques = readings(&arm, path, &channels, &all_bristles(&arm, path), &rigid);
     for (joint, own) in arm.chain.joints.iter().enumerate() {
-        for i in 0..path.len() {
-            assert!((own.lower..=own.upper).contains(&path.position[joint][i]));
-            assert!(path.speed[joint][i].abs() <= own.velocity);
-            assert!(torques[joint][i].abs() <= own.effort);
-        }
+        let within = |q: &f64| (own.lower..=own.upper).contains(q);
+        assert!(path.position[joint].iter().all(within));
+        assert!(path.speed[joint].iter().all(|v| v.abs() <= own.velocity));
+        assert!(torques[joint].iter().all(|t| t.abs() <= own.effort));
     }
 }

@@ -198,7 +198,7 @@ fn used(file: &ArmFile, found: &Design, motion: &Motion) -> Table {
 }
 
 /// A number with what is known of it, by the recordings and by the path.
-fn both<'a>(found: &'a Design) -> impl Iterator<Item = (Option<&'a Expected>, &'a Expected)> {
+fn both(found: &Design) -> impl Iterator<Item = (Option<&Expected>, &Expected)> {
     let after = found.after.iter().enumerate();
     after.map(|(i, one)| (found.before.as_ref().map(|before| &before[i]), one))
 }

@@ -82,9 +82,10 @@ pub fn entangled(
         let mut next = 0;
         taken[first] = true;
         while next < set.len() {
-            for other in 0..count {
-                if !taken[other] && correlation(set[next], other).abs() > ENTANGLED {
-                    taken[other] = true;
+            let from = set[next];
+            for (other, taken) in taken.iter_mut().enumerate() {
+                if !*taken && correlation(from, other).abs() > ENTANGLED {
+                    *taken = true;
                     set.push(other);
                 }
             }
