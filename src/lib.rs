@@ -41,6 +41,7 @@
 //! - [`import`]: logs of real devices made into recordings
 //! - [`case`]: a folder with recordings, read and diagnosed
 //! - [`diagnosis`]: the physics in recordings that the nominal model leaves out
+//! - `excitation`: a motion that tells an arm's numbers apart
 //! - [`laboratory`]: recordings of devices by equations of its own, to prove a diagnosis with
 //! - [`proof`]: a diagnosis scored on the laboratory's cases
 //! - [`vary`]: sweeps of a scenario: the values of each run, and what drives its numbers
@@ -72,6 +73,8 @@ pub mod document;
 pub mod drawing;
 pub mod effects;
 pub mod estimation;
+#[cfg(feature = "cli")]
+pub mod excitation;
 #[cfg(feature = "cli")]
 pub mod figure;
 pub mod flange;

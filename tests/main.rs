@@ -24,6 +24,7 @@ mod effects;
 mod equations;
 mod estimator;
 mod examples;
+mod excitation;
 mod feed;
 mod first_diagnosis;
 mod fleet;

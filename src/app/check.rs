@@ -1,8 +1,10 @@
-//! `idc check`: what a file describes and what would be done with it, without doing it.
+//! `idc check`: what a file describes and what would be done with it, without doing it; of a recorded arm the motion that would tell most of it.
 
 mod arm;
+mod arm_design;
 mod bench;
 mod cell;
+mod identifiability;
 mod postures;
 mod removal_table;
 mod report;
@@ -13,6 +15,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use self::arm_design::Wanted;
 use self::report::Report;
 use super::advice::AdviceArguments;
 use super::error::{AppError, ExitCode};
@@ -41,6 +44,9 @@ Examples:
   idc check assets/proof/cases/case-03
   # How the tool stands across the edge, drawn.
   idc check scenarios/tilted_wrist.toml --draw runs/tilted_wrist_tool.svg
+  # A recorded arm: what its log can tell, and a path that would tell it best.
+  idc new arm runs/arm/arm.toml --urdf models/arm/arm10.urdf
+  idc check runs/arm/arm.toml --design runs/arm/path.csv --duration-s 10
   # For a program; of a refusal, what would make the job possible.
   idc check scenarios/hand_push.toml --json";
 
@@ -51,8 +57,14 @@ pub(super) struct CheckArguments {
     /// SVG file for a drawing of how a cell's tool stands across its edge.
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub(super) draw: Option<PathBuf>,
-    /// Put a new drawing in place of an old one.
-    #[arg(long, help_heading = "Output", requires = "draw")]
+    /// CSV file for a path of a recorded arm's joints over time that tells its numbers apart best, within its limits; a picture goes beside it.
+    #[arg(long, value_name = "CSV", help_heading = "Output")]
+    pub(super) design: Option<PathBuf>,
+    /// Duration of that path [default: 30].
+    #[arg(long, value_name = "SECONDS", help_heading = "Output", requires = "design", value_parser = duration)]
+    pub(super) duration_s: Option<f64>,
+    /// Put new files in place of old ones.
+    #[arg(long, help_heading = "Output")]
     pub(super) force: bool,
     #[command(flatten)]
     pub(super) advice: AdviceArguments,
@@ -64,9 +76,25 @@ pub(super) struct CheckArguments {
     pub(super) json: bool,
 }
 
+/// Duration of a path that is designed [s].
+const USUAL_DURATION: f64 = 30.0;
+
+fn duration(text: &str) -> Result<f64, String> {
+    let read = text.parse().ok().filter(|s| (5.0..=600.0).contains(s));
+    read.ok_or_else(|| "expected 5 to 600 seconds".to_owned())
+}
+
 /// Explains a file.
 pub(super) fn run(arguments: &CheckArguments) -> Result<ExitCode, AppError> {
-    let report = explained(&arguments.file).map_err(|error| advised(error, arguments))?;
+    let mut report = explained(&arguments.file).map_err(|error| advised(error, arguments))?;
+    if let Some(path) = &arguments.design {
+        let wanted = Wanted {
+            file: path,
+            duration: arguments.duration_s.unwrap_or(USUAL_DURATION),
+            policy: OverwritePolicy::of(arguments.force),
+        };
+        arm_design::add(&mut report, &arguments.file, &wanted)?;
+    }
     if let Some(draw) = &arguments.draw {
         let drawing = report.drawing.as_ref().ok_or_else(|| AppError::NoTool {
             file: arguments.file.display().to_string(),

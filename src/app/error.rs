@@ -6,6 +6,7 @@ use crate::cell::CellError;
 use crate::design::DesignError;
 use crate::diagnosis::answer::AnswerError;
 use crate::diagnosis::recordings::recorded::RecordedError;
+use crate::excitation::ExcitationError;
 use crate::import::ImportError;
 use crate::quantity::counted;
 use crate::recording::RecordingError;
@@ -393,6 +394,17 @@ pub enum AppError {
     /// A viewer.
     #[error(transparent)]
     Viewer(#[from] super::viewer::ViewerError),
+    /// A path for something that is no recorded arm.
+    #[error(
+        "{file} is no recorded arm, expected an arm file (kind = \"recorded_arm\") or a folder with arm.toml for --design"
+    )]
+    NoArm {
+        /// The file or folder.
+        file: String,
+    },
+    /// A path that cannot be designed.
+    #[error(transparent)]
+    Excitation(#[from] ExcitationError),
     /// The terminal, or whatever is in its place.
     #[error("cannot print: {0}")]
     Print(std::io::Error),

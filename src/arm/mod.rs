@@ -14,6 +14,6 @@ pub(crate) mod test_chains;
 
 pub use chain::{BodyInertia, Joint, JointKind, KinematicChain, MAX_JOINTS};
 pub use urdf::{
-    Arm, ArmDraft, ArmError, ArmOptions, CollisionShape, EstimatedMass, LimitOverride, Mount,
-    Visual, VisualShape, draft_of, load_arm, mesh_files, mount_of_recorded,
+    Arm, ArmDraft, ArmError, ArmOptions, CollisionShape, EstimatedMass, Identified, LimitOverride,
+    Mount, Visual, VisualShape, draft_of, identified_urdf, load_arm, mesh_files, mount_of_recorded,
 };

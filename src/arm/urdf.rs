@@ -9,6 +9,7 @@ mod draft;
 mod error;
 mod format;
 mod graph;
+mod identified;
 mod inertia;
 mod joints;
 mod masses;
@@ -30,6 +31,7 @@ mod tests;
 pub use arm::{Arm, ArmOptions, CollisionShape, EstimatedMass, LimitOverride, Visual, VisualShape};
 pub use draft::{ArmDraft, draft_of, mount_of_recorded};
 pub use error::{ArmError, Refusal};
+pub use identified::{Identified, identified_urdf};
 pub use mount::Mount;
 
 use crate::arm::chain::{KinematicChain, MAX_JOINTS};

@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::arm_recording::{ArmLog, column_of, noise_of, read};
-use super::diagnosed::{Diagnosed, IMPROVED};
+use super::diagnosed::{DRIVES, Diagnosed, IDENTIFIED, IMPROVED};
 use super::error::CaseError;
 use super::rig::names_to_fit;
 use crate::diagnosis::answer::details::{ChannelMisfit, ChannelNoise};
+use crate::diagnosis::arm::drives::drives_text;
 use crate::diagnosis::arm::input::{ArmInput, ArmRecording};
 use crate::diagnosis::arm::{ArmDiagnosis, diagnose};
 use crate::diagnosis::difference::comparison::{Compared, ComparedChannel, Comparison};
@@ -105,6 +106,7 @@ impl ArmCase {
             mut answer,
             tolerated,
             fitted,
+            drives,
         } = diagnose(&self.input, &mut |_| {});
         for note in &self.notes {
             answer.note(note.clone());
@@ -125,6 +127,9 @@ impl ArmCase {
         if answer.details.misfit.is_empty() {
             answer.details.misfit = self.misfits(&comparison);
         }
+        let mut beside = vec![(DRIVES, drives_text(&drives))];
+        let urdf = answer.kept(IDENTIFIED, self.file.identified_urdf(&model));
+        beside.extend(urdf.flatten().map(|text| (IDENTIFIED, text)));
         answer.seconds = start.elapsed().as_secs_f64();
         Ok(Diagnosed {
             answer,
@@ -133,6 +138,7 @@ impl ArmCase {
             comparison,
             diagnosis: None,
             plant: None,
+            beside,
         })
     }
 
@@ -358,23 +364,15 @@ pub fn predict_arm(file: &ArmFile, path: &Path) -> Result<ArmPrediction, CaseErr
     let folder = path.parent().unwrap_or(Path::new(""));
     let name = path.file_name().unwrap_or_default().display().to_string();
     let log = read(file, folder, &name)?;
-    let drives = (0..file.numbers.len()).map(Channel::Drive);
-    let links = (0..file.numbers.len()).map(Channel::Link);
-    let wrench = (0..WRENCH.len()).map(Channel::Wrench);
-    let wrench = wrench.filter(|_| file.nominal.wrench.is_some());
-    let mut all: Vec<(Channel, f64)> = Vec::new();
-    for channel in drives.chain(links).chain(wrench) {
-        if let Some(noise) = noise_of(file, channel) {
-            all.push((channel, noise));
-        }
-    }
-    let channels: Vec<Channel> = all.iter().map(|(channel, _)| *channel).collect();
+    let ArmInput {
+        channels, noise, ..
+    } = unrecorded(file);
     let recording = log.recording(0, &channels);
     let arm = file.arm(&[log.name().to_owned()]);
     let columns = predicted(&arm, &recording.motion, &channels).into_iter();
-    let columns = columns.zip(recording.readings).zip(all);
+    let columns = columns.zip(recording.readings).zip(channels).zip(noise);
     let columns = columns.map(
-        |((predicted, measured), (channel, noise))| PredictedColumn {
+        |(((predicted, measured), channel), noise)| PredictedColumn {
             name: column_of(file, channel),
             measured,
             predicted,
@@ -402,11 +400,44 @@ pub struct LogSummary {
     pub measured: Vec<String>,
 }
 
-/// The logs of a folder, read as a diagnosis would, with remarks on them.
+/// The logs of a folder, read as a diagnosis would.
+pub struct ArmLogs {
+    /// Each for people.
+    pub summaries: Vec<LogSummary>,
+    /// Remarks on them.
+    pub notes: Vec<String>,
+    /// What a diagnosis is made of.
+    pub input: ArmInput,
+}
+
+/// What a diagnosis of an arm is made of, without recordings: every sensor whose noise the file gives.
+#[must_use]
+pub fn unrecorded(file: &ArmFile) -> ArmInput {
+    let joints = file.numbers.len();
+    let drives = (0..joints).map(Channel::Drive);
+    let links = (0..joints).map(Channel::Link);
+    let wrench = (0..WRENCH.len()).map(Channel::Wrench);
+    let wrench = wrench.filter(|_| file.nominal.wrench.is_some());
+    let all = drives.chain(links).chain(wrench);
+    let known = all.filter_map(|channel| Some((channel, noise_of(file, channel)?)));
+    let (channels, noise): (Vec<Channel>, Vec<f64>) = known.unzip();
+    ArmInput {
+        nominal: file.arm(&[]),
+        links: file.links.clone(),
+        numbers: file.numbers.clone(),
+        tolerated: file.tolerated.clone(),
+        columns: channels.iter().map(|c| column_of(file, *c)).collect(),
+        channels,
+        noise,
+        recordings: Vec::new(),
+    }
+}
+
+/// The logs of a folder, read as a diagnosis would.
 ///
 /// # Errors
 /// What is wrong with file or logs.
-pub fn logs_of(folder: &Path) -> Result<(Vec<LogSummary>, Vec<String>), CaseError> {
+pub fn logs_of(folder: &Path) -> Result<ArmLogs, CaseError> {
     let case = ArmCase::from_folder(folder)?;
     let all = case.input.recordings.iter().map(|r| (r, false));
     let all = all.chain(case.unseen.iter().map(|r| (r, true)));
@@ -423,5 +454,9 @@ pub fn logs_of(folder: &Path) -> Result<(Vec<LogSummary>, Vec<String>), CaseErro
             measured: measured.map(|(column, _)| column.clone()).collect(),
         }
     });
-    Ok((summaries.collect(), case.notes))
+    Ok(ArmLogs {
+        summaries: summaries.collect(),
+        notes: case.notes,
+        input: case.input,
+    })
 }

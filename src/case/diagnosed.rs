@@ -7,6 +7,10 @@ use crate::plant::PlantParameters;
 
 /// Name of the improved model's file.
 pub const IMPROVED: &str = "improved.toml";
+/// Name of the table of a recorded arm's drives.
+pub const DRIVES: &str = "drives.csv";
+/// Name of a recorded arm's URDF with identified numbers.
+pub const IDENTIFIED: &str = "identified.urdf";
 
 /// Result of a diagnosis, with the files that it comes to.
 pub struct Diagnosed {
@@ -22,4 +26,6 @@ pub struct Diagnosed {
     pub diagnosis: Option<Diagnosis>,
     /// The improved model; none of a contact flange or an arm.
     pub plant: Option<PlantParameters>,
+    /// Further files by their names; none but of an arm.
+    pub beside: Vec<(&'static str, String)>,
 }

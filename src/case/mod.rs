@@ -21,10 +21,13 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-pub use arm::{ARM, ArmPrediction, LogSummary, PredictedColumn, arm_of, logs_of, predict_arm};
+pub use arm::{
+    ARM, ArmLogs, ArmPrediction, LogSummary, PredictedColumn, arm_of, logs_of, predict_arm,
+    unrecorded,
+};
 pub use band::{Predicted, predicted_by};
 pub use cell::is_cell_case;
-pub use diagnosed::{Diagnosed, IMPROVED};
+pub use diagnosed::{DRIVES, Diagnosed, IDENTIFIED, IMPROVED};
 pub use error::CaseError;
 pub use flange_prediction::{FlangePrediction, predict_flange_run};
 pub use postures::{
@@ -450,6 +453,7 @@ fn of_plant(
         improved,
         diagnosis: Some(diagnosis),
         plant: Some(plant),
+        beside: Vec::new(),
     }
 }
 
@@ -539,6 +543,7 @@ fn of_flange_runs(
         comparison,
         diagnosis: None,
         plant: None,
+        beside: Vec::new(),
     })
 }
 

@@ -1,6 +1,7 @@
 //! The cell's bodies that must not meet.
 
 use glamx::DPose3;
+use std::path::Path;
 
 use super::device_shape::DeviceShape;
 use super::error::CellError;
@@ -8,14 +9,12 @@ use super::part::Part;
 use crate::arm::chain::KinematicChain;
 use crate::arm::{Arm, Visual, VisualShape};
 use crate::collision::{
-    Body, CollisionModel, ModelError, ModelRequest, Mount, RiddenEdge, Role, Solid, SolidError,
+    Body, CollisionModel, ModelError, ModelRequest, Mount, RiddenEdge, Role, Solid, fixed_body,
+    floor_at, links_of, robot_body,
 };
 use crate::plant::{Nominal, PlantParameters};
 use crate::scenario::{Obstacle, ObstacleShape, Scenario};
 use crate::workpiece::load_mesh;
-
-/// Size of the floor, far beyond any arm's reach, and its thickness [m].
-const FLOOR: [f64; 2] = [40.0, 1.0];
 
 /// The model of a cell, its part at its nominal pose.
 pub(super) fn model(
@@ -30,7 +29,7 @@ pub(super) fn model(
         source,
     };
     let base = scenario.arm.world_from_base;
-    let mut bodies = links(arm, base).map_err(refused)?;
+    let mut bodies = links_of(arm, base).map_err(refused)?;
     bodies.extend(device(&scenario.nominal, arm).map_err(refused)?);
     let world_from_part = scenario.workpiece.world_from_part;
     let surface = Solid::surface(&part.mesh).map_err(|source| {
@@ -39,9 +38,12 @@ pub(super) fn model(
             source,
         })
     })?;
-    bodies.push((Role::Part, static_body("part", world_from_part, surface)));
+    bodies.push((Role::Part, fixed_body("part", world_from_part, surface)));
     for obstacle in &scenario.collision.obstacles {
-        bodies.push((Role::Obstacle, body_of(obstacle, scenario, notes)?));
+        bodies.push((
+            Role::Obstacle,
+            obstacle_body(obstacle, &scenario.path, notes)?,
+        ));
     }
     bodies.extend(floor(scenario, &bodies, notes));
     let centre = glam::DVec3::new(0.0, 0.0, scenario.nominal.mounting.tool_centre);
@@ -71,32 +73,6 @@ pub(super) fn model(
     Ok(model)
 }
 
-fn static_body(name: &str, pose: DPose3, solid: Solid) -> Body {
-    Body {
-        name: name.to_owned(),
-        mount: Mount::World(pose),
-        solids: vec![solid],
-    }
-}
-
-/// The arm's base and links that have a shape.
-fn links(arm: &Arm, world_from_base: DPose3) -> Result<Vec<(Role, Body)>, ModelError> {
-    let mut bodies = Vec::new();
-    for (index, name) in arm.link_names.iter().enumerate() {
-        let own = arm
-            .collisions
-            .iter()
-            .filter(|shape| shape.link_index == index);
-        let shapes = own.map(|own| (&own.shape, own.link_from_shape));
-        let mount = match index {
-            0 => Mount::World(world_from_base),
-            _ => Mount::Link(index - 1),
-        };
-        bodies.extend(robot(Role::Robot, name, mount, shapes)?);
-    }
-    Ok(bodies)
-}
-
 /// The device's cylinders, and its slide with the tool but for the ball nose.
 fn device(nominal: &Nominal<PlantParameters>, arm: &Arm) -> Result<Vec<(Role, Body)>, ModelError> {
     let shape = DeviceShape::of(nominal);
@@ -118,44 +94,23 @@ fn device(nominal: &Nominal<PlantParameters>, arm: &Arm) -> Result<Vec<(Role, Bo
         (Role::Tool, "tool", count, &moving),
     ] {
         let shapes = shapes.iter().map(|(shape, pose)| (shape, *pose));
-        bodies.extend(robot(role, name, Mount::Link(joint), shapes)?);
+        bodies.extend(robot_body(role, name, Mount::Link(joint), shapes)?);
     }
     Ok(bodies)
 }
 
-/// A body of the robot's; none without shapes.
-fn robot<'a>(
-    role: Role,
-    name: &str,
-    mount: Mount,
-    shapes: impl Iterator<Item = (&'a VisualShape, DPose3)>,
-) -> Result<Option<(Role, Body)>, ModelError> {
-    let refused = |source: SolidError| ModelError::Solid {
-        body: name.to_owned(),
-        source,
-    };
-    let solids: Vec<Solid> = shapes
-        .map(|(shape, pose)| Solid::convex(shape, pose).map_err(refused))
-        .collect::<Result<_, _>>()?;
-    if solids.is_empty() {
-        return Ok(None);
-    }
-    let body = Body {
-        name: name.to_owned(),
-        mount,
-        solids,
-    };
-    Ok(Some((role, body)))
-}
-
-fn body_of(
+/// An obstacle that a file states.
+///
+/// # Errors
+/// Its mesh cannot be read, or encloses nothing.
+pub fn obstacle_body(
     obstacle: &Obstacle,
-    scenario: &Scenario,
+    file: &Path,
     notes: &mut Vec<String>,
 ) -> Result<Body, CellError> {
     let (pose, name) = (obstacle.world_from_obstacle, &obstacle.name);
     let refused = |source| CellError::CollisionModel {
-        file: scenario.path.clone(),
+        file: file.to_owned(),
         source: ModelError::Solid {
             body: name.clone(),
             source,
@@ -172,7 +127,7 @@ fn body_of(
             Solid::surface(&mesh)
         }
     };
-    Ok(static_body(name, pose, solid.map_err(refused)?))
+    Ok(fixed_body(name, pose, solid.map_err(refused)?))
 }
 
 /// The floor: where the scenario says, else through the world's origin unless something of the cell stands below it.
@@ -195,14 +150,5 @@ fn floor(
         }
         None => 0.0,
     };
-    let [size, thickness] = FLOOR;
-    let slab = VisualShape::Box {
-        size: glam::DVec3::new(size, size, thickness),
-    };
-    let middle = glam::DVec3::new(0.0, 0.0, height - 0.5 * thickness);
-    let solid = Solid::convex(&slab, DPose3::IDENTITY).ok()?;
-    Some((
-        Role::Floor,
-        static_body("floor", DPose3::from_translation(middle), solid),
-    ))
+    Some((Role::Floor, floor_at(height)))
 }

@@ -20,6 +20,7 @@ use glam::DVec3;
 use glamx::DPose3;
 
 pub use ball::largest_balls;
+pub use collision::obstacle_body;
 pub use device_shape::DeviceShape;
 pub use error::CellError;
 pub use estimated::{EstimatedArm, EstimatedLink, EstimatedTorque};

@@ -86,6 +86,14 @@ impl Solid {
         }
     }
 
+    /// A box about its body's origin, of edge lengths [m].
+    #[must_use]
+    pub fn cuboid(size: DVec3) -> Self {
+        let half = 0.5 * size;
+        let shape = SharedShape::cuboid(half.x, half.y, half.z);
+        Self::new(shape, DPose3::IDENTITY)
+    }
+
     /// The closed surface of a part or an obstacle.
     ///
     /// # Errors

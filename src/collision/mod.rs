@@ -18,6 +18,7 @@
 //! Latombe, IEEE Trans. Robotics 21(3), 2005). Distances are those of Rapier's parry: of a link's mesh its convex hull counts, of part and obstacles the surface.
 
 mod ball;
+mod bodies;
 mod body;
 mod model;
 mod motion;
@@ -28,6 +29,7 @@ mod watch;
 mod tests;
 
 pub use ball::{RIDDEN_ZONE, RiddenEdge};
+pub use bodies::{fixed_body, floor_at, links_of, robot_body};
 pub use body::{Body, Mount, Solid, SolidError};
 pub use model::{CollisionModel, ModelError, ModelRequest, Pair, PlacedBody, Role};
 pub use motion::JointMotion;

@@ -11,6 +11,7 @@ pub mod bristles;
 pub mod delay;
 pub mod drive;
 pub mod filter;
+pub mod fourier_path;
 pub mod law;
 pub mod moment;
 pub mod motion;

@@ -11,6 +11,8 @@ pub enum Quantity {
     LinkMass(usize),
     /// A coordinate of a link's centre of mass [m].
     LinkCentre(usize, usize),
+    /// An element of a link's inertia tensor about its centre of mass, in the order of [`INERTIA_ELEMENTS`] [kg m2].
+    LinkInertia(usize, usize),
     /// Amperes per newton metre [A/(N m)].
     InverseGain(usize),
     /// Inertia of motor and gear [kg m2].
@@ -84,6 +86,16 @@ pub enum Quantity {
     /// Width of a law.
     LawWidth(usize),
 }
+
+/// Elements of an inertia tensor: name, row and column.
+pub const INERTIA_ELEMENTS: [(&str, usize, usize); 6] = [
+    ("xx", 0, 0),
+    ("yy", 1, 1),
+    ("zz", 2, 2),
+    ("xy", 0, 1),
+    ("xz", 0, 2),
+    ("yz", 1, 2),
+];
 
 fn crosstalk(wrench: &mut WrenchSensor, source: usize, target: usize) -> &mut f64 {
     let known = (wrench.crosstalk.iter()).position(|c| c.source == source && c.target == target);
@@ -179,6 +191,11 @@ impl Quantity {
             let drive = arm.drives.get(joint).copied();
             return drive.map_or(0.0, |mut drive| *field(&mut drive));
         }
+        if let Self::LinkInertia(link, element) = self {
+            let (_, row, column) = INERTIA_ELEMENTS[element];
+            let joint = arm.chain.joints.get(link);
+            return joint.map_or(0.0, |j| j.body.inertia.col(column)[row]);
+        }
         let mut copy = arm.clone();
         self.slot(&mut copy).map_or(0.0, |slot| *slot)
     }
@@ -188,6 +205,14 @@ impl Quantity {
         if let Self::LinkMass(link) = self {
             if let Some(joint) = arm.chain.joints.get_mut(link) {
                 set_mass(&mut joint.body, value);
+            }
+            return;
+        }
+        if let Self::LinkInertia(link, element) = self {
+            let (_, row, column) = INERTIA_ELEMENTS[element];
+            if let Some(joint) = arm.chain.joints.get_mut(link) {
+                joint.body.inertia.col_mut(column)[row] = value;
+                joint.body.inertia.col_mut(row)[column] = value;
             }
             return;
         }
@@ -204,7 +229,8 @@ impl Quantity {
             Self::LinkCentre(..)
             | Self::ToolCentre(_)
             | Self::PayloadMoment(_)
-            | Self::LoadMoment(_) => 1e-3,
+            | Self::LoadMoment(_)
+            | Self::LinkInertia(..) => 1e-3,
             Self::InverseGain(_)
             | Self::WrenchGain(_)
             | Self::Crosstalk(..)

@@ -26,7 +26,9 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use serde_json::Value;
 
-use crate::arm::BodyInertia;
+use super::CollisionScenario;
+use super::collision::collision;
+use crate::arm::{Arm, ArmError, ArmOptions, BodyInertia, Identified, identified_urdf, load_arm};
 use crate::keys::check::Section;
 use crate::keys::declaration::of_file;
 use crate::keys::document::{Document, read_text};
@@ -73,6 +75,10 @@ pub struct ArmFile {
     pub predict: Option<String>,
     /// Where the tool touches, along the flange's z from the wrench sensor's origin [m].
     pub tip: Option<f64>,
+    /// What a designed path keeps clear of.
+    pub collision: CollisionScenario,
+    /// What of the URDF is the arm.
+    options: ArmOptions,
     /// Recordings in which something pushes.
     push_recordings: Vec<String>,
 }
@@ -88,6 +94,39 @@ impl ArmFile {
             push.recording = place.unwrap_or(usize::MAX);
         }
         arm
+    }
+
+    /// The arm of the URDF with its shapes.
+    ///
+    /// # Errors
+    /// A mesh that cannot be read.
+    pub fn with_shapes(&self) -> Result<Arm, ArmError> {
+        let options = ArmOptions {
+            skip_visuals: false,
+            ..self.options.clone()
+        };
+        load_arm(&self.urdf, &options)
+    }
+
+    /// Text of the URDF with the masses, centres and frictions of an arm in place of its own; none of a file of macros.
+    ///
+    /// # Errors
+    /// The URDF can no longer be read.
+    pub fn identified_urdf(&self, arm: &ArmParameters) -> Result<Option<String>, ArmError> {
+        let joints = arm.chain.joints.iter().zip(&arm.drives).zip(&self.bodies);
+        let found = joints.map(|((joint, drive), own)| {
+            let same = joint.body == *own;
+            Identified {
+                mass_ratio: match own.mass > 0.0 && !same {
+                    true => joint.body.mass / own.mass,
+                    false => 1.0,
+                },
+                shift: joint.body.centre_of_mass - own.centre_of_mass,
+                damping: drive.viscous,
+                friction: drive.coulomb,
+            }
+        });
+        identified_urdf(&self.urdf, &self.options, &found.collect::<Vec<_>>())
     }
 
     fn names(&self) -> Names<'_> {
@@ -169,6 +208,8 @@ pub fn from_text(path: &Path, text: &str) -> Result<ArmFile, ScenarioError> {
         fit: keys.recordings.fit,
         predict: keys.recordings.predict,
         tip: keys.wrench.and_then(|wrench| wrench.tip),
+        collision: collision(&document, &keys.collision, &keys.obstacles)?,
+        options: values::options(&keys.arm),
         push_recordings,
         links,
         numbers,

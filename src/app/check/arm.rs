@@ -3,9 +3,11 @@
 use std::path::Path;
 
 use super::super::error::AppError;
+use super::identifiability::identifiability;
 use super::report::{Report, shown};
 use crate::arm::JointKind;
-use crate::case::{ARM, arm_of, logs_of};
+use crate::case::{ARM, ArmLogs, arm_of, logs_of, unrecorded};
+use crate::diagnosis::arm::input::ArmInput;
 use crate::quantity::counted;
 use crate::scenario::arm_file::{ArmFile, load_arm_file};
 use crate::shell::word;
@@ -17,6 +19,7 @@ pub(super) fn arm(path: &Path) -> Result<Report, AppError> {
     let mut report = Report::new(path, kind, None);
     describe(&mut report, &file);
     let folder = path.parent().unwrap_or(Path::new(""));
+    identifiability(&mut report, &recorded(&file, folder));
     for name in file.fit.iter().filter(|name| !name.contains('*')) {
         report.file("recording to diagnose from", &folder.join(name));
     }
@@ -36,7 +39,11 @@ pub(super) fn case(folder: &Path) -> Result<Report, AppError> {
     let kind = "a case to diagnose: a recorded arm and recordings";
     let mut report = Report::new(folder, kind, None);
     describe(&mut report, &file);
-    let (logs, notes) = logs_of(folder)?;
+    let ArmLogs {
+        summaries: logs,
+        notes,
+        input,
+    } = logs_of(folder)?;
     report.file("arm", &folder.join(ARM));
     for log in &logs {
         let what = match log.unseen {
@@ -59,11 +66,21 @@ pub(super) fn case(folder: &Path) -> Result<Report, AppError> {
         report.file(what, &folder.join(&log.name));
     }
     report.number("recordings", logs.iter().filter(|log| !log.unseen).count());
+    identifiability(&mut report, &input);
     for note in notes {
         report.note(note);
     }
     report.next(format!("idc diagnose {} --out DIR", word(folder)));
     Ok(report)
+}
+
+/// What a diagnosis is made of: with the recordings where all are there and can be read, as a check of the folder says why they cannot.
+pub(super) fn recorded(file: &ArmFile, folder: &Path) -> ArmInput {
+    let is_case = file.path.file_name().is_some_and(|name| name == ARM);
+    match logs_of(folder) {
+        Ok(logs) if is_case => logs.input,
+        _ => unrecorded(file),
+    }
 }
 
 fn describe(report: &mut Report, file: &ArmFile) {

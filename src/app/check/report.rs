@@ -26,6 +26,9 @@ pub(super) struct Report {
     files: Vec<FileNote>,
     /// How a cell's tool stands across its edge, as SVG.
     pub(super) drawing: Option<String>,
+    /// Tables for people; their numbers stand among the others.
+    #[serde(skip)]
+    tables: Vec<Table>,
     /// Notes on what a user may not expect.
     notes: Vec<String>,
     /// Next step for the user.
@@ -50,6 +53,7 @@ impl Report {
             numbers: serde_json::Map::new(),
             files: Vec::new(),
             drawing: None,
+            tables: Vec::new(),
             notes: Vec::new(),
             next: String::new(),
         }
@@ -69,6 +73,10 @@ impl Report {
             path: without_detours(path),
             there: path.exists(),
         });
+    }
+
+    pub(super) fn table(&mut self, table: Table) {
+        self.tables.push(table);
     }
 
     pub(super) fn note(&mut self, sentence: impl Into<String>) {
@@ -141,6 +149,7 @@ impl Report {
         let table = Table::new("", vec![Column::default(); 2], rows.collect());
         let notes = self.notes.iter().map(|note| format!("note: {note}"));
         let blocks = std::iter::once(Block::Table(table));
+        let blocks = blocks.chain(self.tables.iter().cloned().map(Block::Table));
         let blocks = blocks.chain(notes.map(Block::Paragraph));
         let document = Document {
             title: format!("{}: {}", self.file.display(), self.kind),

@@ -135,6 +135,7 @@ impl Prepared {
             answer,
             improved: &improved,
             prediction: prediction.as_deref(),
+            beside: &[],
             picture: None,
             fit_picture: Some(&picture),
             scene: None,
@@ -182,6 +183,7 @@ impl Prepared {
             prediction,
             comparison,
             diagnosis,
+            beside,
             ..
         } = diagnosed;
         let mut fit = flange_picture::picture(&answer, &comparison);
@@ -194,18 +196,16 @@ impl Prepared {
                 answer.details.account.add(SectionKind::HowToRun, vec![how]);
             }
         }
-        if case.is_of_arm() && !answer.effects.is_empty() {
-            let improved = word(&self.folder.path().join(IMPROVED));
-            let how = format!(
-                "`idc predict {improved} LOG.csv` predicts what the arm's sensors read along another path, with what was found."
-            );
-            answer.details.account.add(SectionKind::HowToRun, vec![how]);
+        if case.is_of_arm() {
+            let how = how_to_go_on_with_arm(&answer, &self.folder.path().join(IMPROVED));
+            answer.details.account.add(SectionKind::HowToRun, how);
         }
         let fit = answer.kept("fit.svg", fit).flatten();
         let outputs = Outputs {
             answer,
             improved: &improved,
             prediction: prediction.as_deref(),
+            beside: &beside,
             picture: shape.as_deref(),
             fit_picture: fit.as_deref(),
             scene: scene.flatten(),
@@ -213,6 +213,21 @@ impl Prepared {
         };
         outputs.write(&self.folder)
     }
+}
+
+/// Next steps with what was found of an arm.
+fn how_to_go_on_with_arm(answer: &Answer, file: &Path) -> Vec<String> {
+    let improved = word(file);
+    let mut how = vec![
+        "drives.csv holds the numbers of the drives with their 95 % intervals, identified.urdf the URDF with the masses, centres, damping and friction that were found.".to_owned(),
+        format!("`idc check {improved} --design PATH.csv` writes a path of the joints that would tell more."),
+    ];
+    if !answer.effects.is_empty() {
+        how.push(format!(
+            "`idc predict {improved} LOG.csv` predicts what the arm's sensors read along another path, with what was found."
+        ));
+    }
+    how
 }
 
 /// Next steps with the improved file.

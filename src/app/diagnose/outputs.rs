@@ -6,7 +6,7 @@ use super::super::error::AppError;
 use super::super::files::{BALANCE, BOARD, COMPARISON, DIAGNOSIS, OutputFolder, REPORT};
 use super::board::board;
 use super::comparison_files::{write_balances, write_recordings};
-use crate::case::IMPROVED;
+use crate::case::{DRIVES, IDENTIFIED, IMPROVED};
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::difference::comparison::Comparison;
 use crate::document::{Style, html, text};
@@ -22,12 +22,14 @@ const PICTURE: &str = "unlisted.svg";
 /// Before and after, of a part of the device.
 const FIT_PICTURE: &str = "fit.svg";
 /// All that a diagnosis may write.
-pub(super) const NAMES: [&str; 10] = [
+pub(super) const NAMES: [&str; 12] = [
     ACCOUNT,
     IMPROVED,
     PREDICTION,
     PICTURE,
     FIT_PICTURE,
+    DRIVES,
+    IDENTIFIED,
     COMPARISON,
     BALANCE,
     REPORT,
@@ -49,6 +51,8 @@ pub(super) struct Outputs<'a> {
     pub improved: &'a str,
     /// prediction.csv.
     pub prediction: Option<&'a str>,
+    /// drives.csv, identified.urdf.
+    pub beside: &'a [(&'static str, String)],
     /// unlisted.svg.
     pub picture: Option<&'a str>,
     /// fit.svg.
@@ -78,7 +82,13 @@ impl Outputs<'_> {
         let document = self.answer.text()?;
         let report = report::diagnosis(&self.answer, self.comparison);
         let account = text(&report, Style::Plain);
+        let beside = |wanted: &str| {
+            let own = self.beside.iter().find(|(name, _)| *name == wanted);
+            own.map(|(_, text)| text.as_str())
+        };
         let optional = [
+            (DRIVES, beside(DRIVES)),
+            (IDENTIFIED, beside(IDENTIFIED)),
             (PREDICTION, self.prediction),
             (PICTURE, self.picture),
             (FIT_PICTURE, self.fit_picture),

@@ -1,5 +1,6 @@
 //! What is said of a recorded arm: what is missing, what to write into its controller, what is left.
 
+use super::drives::{DriveNumbers, sentences};
 use super::effect::ArmEffect;
 use super::input::ArmInput;
 use super::search::Found;
@@ -19,7 +20,7 @@ pub fn account(
     found: &Found,
     effects: &[FoundEffect],
     alternatives: &[Alternative],
-    touching: &[bool],
+    (touching, drives): (&[bool], &[DriveNumbers]),
 ) -> Account {
     let named: Vec<String> = effects
         .iter()
@@ -40,6 +41,7 @@ pub fn account(
         effects.iter().map(of_effect).collect(),
     );
     account.add(SectionKind::Controller, controller(found, effects));
+    account.add(SectionKind::Arm, sentences(drives));
     account.add(SectionKind::Remaining, left);
     let rivals = alternatives.iter().take(4).map(|rival| {
         format!(

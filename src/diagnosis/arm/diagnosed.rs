@@ -3,6 +3,7 @@
 use super::account::account;
 use super::answer::{alternatives, effects};
 use super::contact::touching;
+use super::drives::{DriveNumbers, drives};
 use super::effect::ArmEffect;
 use super::evidence::Evidence;
 use super::extent::{changes, stretches};
@@ -28,6 +29,8 @@ pub struct ArmDiagnosis {
     pub tolerated: ArmParameters,
     /// The whole improved description.
     pub fitted: ArmParameters,
+    /// Numbers of its drives.
+    pub drives: Vec<DriveNumbers>,
 }
 
 /// Diagnoses a recorded arm; `observer` gets the number of each stage of the search.
@@ -52,7 +55,8 @@ pub fn diagnose(input: &ArmInput, observer: &mut dyn FnMut(usize)) -> ArmDiagnos
     } else {
         Verdict::Explained
     };
-    let account = account(input, &found, &effects, &alternatives, &touching);
+    let drives = drives(input, &found.best.fit);
+    let account = account(input, &found, &effects, &alternatives, (&touching, &drives));
     let fully = found.scales.iter().all(|scale| *scale <= EXPLAINED);
     let answer = Answer {
         schema: SCHEMA,
@@ -83,6 +87,7 @@ pub fn diagnose(input: &ArmInput, observer: &mut dyn FnMut(usize)) -> ArmDiagnos
         answer,
         tolerated: found.nominal.fit.arm,
         fitted,
+        drives,
     }
 }
 

@@ -15,10 +15,10 @@ use super::fit::Fit;
 use crate::recorded_arm::{ArmParameters, Quantity};
 
 /// Half-width of an interval over the standard deviation of noise alone [1]: 1.96, and an eighth for the model.
-const HALF_WIDTH: f64 = 2.2;
+pub const HALF_WIDTH: f64 = 2.2;
 
 /// Half-width of what the form of a law leaves open, as a share of its size [1].
-const FORM: f64 = 0.03;
+pub const FORM: f64 = 0.03;
 /// The same of the beginning and end of a push, whose course is not known [s].
 const COURSE: f64 = 0.04;
 
@@ -92,14 +92,18 @@ fn is_law_of_textbook(effect: ArmEffect) -> bool {
 /// Covariance of a fit's numbers.
 #[must_use]
 pub fn covariance(fit: &Fit) -> DMatrix<f64> {
-    let count = fit.hessian.nrows();
+    inverse_of(&fit.hessian)
+}
+
+/// Inverse of the curvature of half a cost; zeros where it is not positive definite.
+#[must_use]
+pub fn inverse_of(hessian: &DMatrix<f64>) -> DMatrix<f64> {
+    let count = hessian.nrows();
     // Scaled to ones on its diagonal: units differ by many orders.
     let scale: Vec<f64> = (0..count)
-        .map(|i| fit.hessian[(i, i)].max(1e-300).sqrt())
+        .map(|i| hessian[(i, i)].max(1e-300).sqrt())
         .collect();
-    let scaled = DMatrix::from_fn(count, count, |i, j| {
-        fit.hessian[(i, j)] / (scale[i] * scale[j])
-    });
+    let scaled = DMatrix::from_fn(count, count, |i, j| hessian[(i, j)] / (scale[i] * scale[j]));
     let inverse = scaled
         .cholesky()
         .map_or_else(|| DMatrix::zeros(count, count), |c| c.inverse());

@@ -274,9 +274,11 @@ impl Course {
 fn is_moved(quantity: Quantity, channel: Channel, arm: &ArmParameters) -> bool {
     use Quantity as Q;
     match quantity {
-        Q::LinkMass(_) | Q::LinkCentre(..) | Q::LoadMass | Q::LoadMoment(_) => {
-            !matches!(channel, Channel::Wrench(_))
-        }
+        Q::LinkMass(_)
+        | Q::LinkCentre(..)
+        | Q::LinkInertia(..)
+        | Q::LoadMass
+        | Q::LoadMoment(_) => !matches!(channel, Channel::Wrench(_)),
         Q::PayloadMass | Q::PayloadMoment(_) => !matches!(channel, Channel::Wrench(_)),
         Q::Tilt(_) | Q::EncoderOffset(_) | Q::ToolMass | Q::ToolCentre(_) => true,
         Q::Compliance(_) => !matches!(channel, Channel::Wrench(_)),

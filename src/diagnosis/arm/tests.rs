@@ -2,6 +2,7 @@
 
 use super::contact::touching;
 use super::diagnosed::diagnose;
+use super::drives::{DriveNumber, drives_text};
 use super::held::held_pushes;
 use super::input::{ArmInput, ArmRecording};
 use crate::arm::test_chains::random_chain;
@@ -148,6 +149,40 @@ fn an_arm_within_its_tolerances_lacks_nothing() {
         answer.effects
     );
     assert!(answer.mismatch.is_empty());
+}
+
+#[test]
+fn the_table_of_drives_holds_the_truth_and_knows_friction_better_in_amperes() {
+    let mut truth = nominal();
+    truth.drives[0].inverse_gain *= 1.06;
+    truth.drives[1].coulomb *= 0.8;
+    let drives = diagnose(&input(&truth, false), &mut |_| {}).drives;
+    for (found, own) in drives.iter().zip(&truth.drives) {
+        let gain = 1.0 / own.inverse_gain;
+        let [dry, viscous, inertia] = found.mechanical;
+        let [amperes, _, per_ampere] = found.electrical.unwrap();
+        let pairs = [
+            (dry, own.coulomb),
+            (viscous, own.viscous),
+            (inertia, own.motor_inertia),
+            (amperes, own.coulomb / gain),
+            (per_ampere, gain),
+        ];
+        for (number, truth) in pairs {
+            let [low, high] = number.interval.unwrap();
+            assert!(low <= truth && truth <= high, "{number:?} {truth}");
+        }
+        let share = |number: DriveNumber| {
+            let [low, high] = number.interval.unwrap();
+            (high - low) / number.value
+        };
+        assert!(share(amperes) <= share(dry));
+        assert_eq!(found.effort, 100.0);
+    }
+    let text = drives_text(&drives);
+    let counts = text.lines().map(|line| line.split(',').count());
+    assert!(counts.clone().all(|count| count == 24), "{text}");
+    assert_eq!(counts.count(), 1 + JOINTS);
 }
 
 #[test]

@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::PathBuf;
 
+use super::super::file::{CollisionKeys, ObstacleKeys};
 use super::super::rig_file::RecordingsKeys;
 use super::super::toleranced::Toleranced;
 use super::effects::EffectTables;
@@ -43,6 +44,10 @@ keys! {
         sensors: SensorsKeys = "sensors";
         /// recordings
         recordings: RecordingsKeys = "recordings";
+        /// what a designed path keeps clear of; the world is the base link's frame
+        collision: CollisionKeys = "collision";
+        /// what stands beside the arm
+        obstacles: Vec<ObstacleKeys> = "obstacle";
         /// physics beyond the nominal model
         effects: EffectTables = "effect";
         /// laws at joints that have no name

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::super::toleranced::{Content, Toleranced};
-use super::keys::{ArmFileKeys, DriveKeys, LinkKeys, LoadKeys, SensorsKeys, WrenchKeys};
+use super::keys::{ArmFileKeys, ArmKeys, DriveKeys, LinkKeys, LoadKeys, SensorsKeys, WrenchKeys};
 use super::names::Names;
 use super::noise::ArmNoise;
 use super::order::column_order;
@@ -64,6 +64,17 @@ impl Known {
     }
 }
 
+/// What of the URDF is the arm.
+pub(super) fn options(keys: &ArmKeys) -> ArmOptions {
+    ArmOptions {
+        base_link: keys.base.clone(),
+        tip_link: keys.flange.clone(),
+        skip_visuals: true,
+        is_recorded: true,
+        ..ArmOptions::default()
+    }
+}
+
 /// The URDF's arm, its drives still without numbers, with the names of its links and the number of each joint in columns.
 pub(super) fn chain(
     document: &Document<'_>,
@@ -71,14 +82,7 @@ pub(super) fn chain(
 ) -> Result<(ArmParameters, Vec<String>, Vec<usize>), ScenarioError> {
     let section = Section::new(document, "arm");
     let path = section.file("urdf", &keys.arm.urdf)?;
-    let options = ArmOptions {
-        base_link: keys.arm.base.clone(),
-        tip_link: keys.arm.flange.clone(),
-        skip_visuals: true,
-        is_recorded: true,
-        ..ArmOptions::default()
-    };
-    let arm = load_arm(&path, &options).map_err(|error| {
+    let arm = load_arm(&path, &options(&keys.arm)).map_err(|error| {
         let found = format!("\"{}\"", keys.arm.urdf.display());
         section.refuse("urdf", found, format!("an arm that can be read: {error}"))
     })?;
