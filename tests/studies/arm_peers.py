@@ -3,7 +3,7 @@
 
     PYTHON tests/studies/arm_peers.py IDC OUT [--only pinocchio figaroh] [--write docs/evidence/PEERS.md]
 
-PYTHON has `mujoco[sysid]`, `pin`, `figaroh` and scipy; a peer that is not there is left out and said so. Recordings and error are those of ur10e_arm.py beside this: fitted to
+PYTHON has what docs/evidence/peers/requirements.txt names; a peer that is not there is left out and said so. Recordings and error are those of ur10e_arm.py beside this: fitted to
 free_12harm_30s, judged on free_14harm_50s by the RMS of the residual over the RMS of the current, both through a zero-phase low-pass at 6 Hz, while any joint moves faster than
 0.01 rad/s. The load is what explains loaded_14harm_50s with the arm as fitted to the free path. Peers get what their manuals ask for: positions, speeds and accelerations filtered the
 same way, gains free within what is published where the method allows it, else in the middle of it.
@@ -190,7 +190,7 @@ def figaroh(out, logs):
 
 
 def mujoco_sysid(out, logs):
-    """MuJoCo's toolbox with inverse dynamics as its rollout: damping, dry friction, armature, gain and offset of each joint, links' masses within a twentieth."""
+    """MuJoCo's toolbox with inverse dynamics as its rollout: damping, dry friction, armature, gain and offset of each joint, links' masses and centres within our tolerances."""
     import mujoco
     from mujoco import sysid
     urdf = plain_urdf(out)
@@ -220,17 +220,17 @@ def mujoco_sysid(out, logs):
         gain, offset = (np.array([values[f"{k}_{j}"].value[0] for j in range(6)]) for k in ("gain", "offset"))
         return made / gain + offset
 
-    def rollout(models, datas, control_signal, initial_states, param_dicts, signal_map, state_map, ctrl_map):
+    def rollout(models, datas, control_signal, initial_states, param_dicts, rollout_signal_mapping, rollout_state_mapping, ctrl_mapping):
         made = []
         for model, control, start, values in zip(models, control_signal, initial_states, param_dicts, strict=True):
             times = control.times[1:]
             state = np.column_stack([times, control.data[1:, :12]])
-            made.append(sysid.SystemTrajectory(model=model, control=control, initial_state=start, state=sysid.TimeSeries(times, state, state_map),
-                                               sensordata=sysid.TimeSeries(times, currents(model, control.data, values)[1:], signal_map)))
+            made.append(sysid.SystemTrajectory(model=model, control=control, initial_state=start, state=sysid.TimeSeries(times, state, rollout_state_mapping),
+                                               sensordata=sysid.TimeSeries(times, currents(model, control.data, values)[1:], rollout_signal_mapping)))
         return made
     spec = built()
     names, bodies = [j.name for j in spec.joints], [j.parent.name for j in spec.joints]
-    masses = [spec.body(b).mass for b in bodies]
+    model = spec.compile()
     params = sysid.ParameterDict()
 
     def add(name, start, low, high, modifier=None):
@@ -249,15 +249,15 @@ def mujoco_sysid(out, logs):
         add(f"offset_{j}", 0.0, -1.0, 1.0)
         for key, start, most in (("armature", 1.0, 20.0), ("frictionloss", 5.0, 60.0), ("damping", 5.0, 80.0)):
             add(f"{key}_{j}", start, 0.0, most, set_joint(j, key))
-        add(f"mass_{j}", masses[j], 0.95 * masses[j], 1.05 * masses[j], lambda s, p, j=j: setattr(s.body(bodies[j]), "mass", p.value[0]))
+        params.add(sysid.body_inertia_param(spec, model, bodies[j], scale_rot_inertia=True, mass_bound_mult=np.array([0.95, 1.05]), ipos_bound_off=np.array([-0.01, 0.01])))
 
     def sequence(log, every):
         kept = np.flatnonzero(log.moves)[::every]
-        model, motion = spec.compile(), np.hstack([log.q, log.v, log.a])[kept]
+        motion = np.hstack([log.q, log.v, log.a])[kept]
         times = np.arange(len(kept)) / RATE
         start = sysid.create_initial_state(model, motion[0, :6], motion[0, 6:12])
         return sysid.ModelSequences("ur10e", spec, "fit", start, sysid.TimeSeries(times, motion), sysid.TimeSeries.from_names(times, log.current[kept], model))
-    residual = sysid.build_residual_fn(models_sequences=[sequence(logs[FIT], 4)], n_threads=1, custom_rollout=rollout, resample_true=False)
+    residual = sysid.build_residual_fn(models_sequences=[sequence(logs[FIT], 2)], n_threads=1, custom_rollout=rollout, resample_true=False)
     best, _ = sysid.optimize(initial_params=params, residual_fn=residual, optimizer="mujoco", verbose=False)
     model = sysid.apply_param_modifiers(best, spec)
     model = model if isinstance(model, mujoco.MjModel) else spec.compile()
@@ -269,7 +269,7 @@ def mujoco_sysid(out, logs):
     spent = time.process_time() - begin
     _, regressor = regressors(urdf, logs[LOADED])
     return {"errors": errors(logs[PREDICT], predict(PREDICT)), "payload": f"{load_of(predict(LOADED), gain, logs[LOADED], regressor):.2f}", "seconds": spent,
-            "names": "nothing: gain, offset, dry and viscous friction, armature of each joint, masses as numbers"}
+            "names": "nothing: gain, offset, dry and viscous friction, armature of each joint, masses and centres as numbers"}
 
 
 PEERS = {"pinocchio_plain": ("Pinocchio, a regression a joint", pinocchio_plain, ("pin",)), "pinocchio_base": ("Pinocchio, base parameters of the arm", pinocchio_base, ("pin",)),

@@ -1,15 +1,16 @@
 #!/usr/bin/env python3
 """How sure diagnoses of recorded arms are, against how often they are right: arms of our own generator, by another engine (MuJoCo) and friction law (Maxwell slip) than the tool's.
 
-    build/references/venv/bin/python tests/studies/recorded_arms.py IDC OUT [--cases 200] [--only 3 17] [--jobs 2] [--write docs/evidence/RECORDED_ARMS.md] [--note TEXT]
+    PYTHON tests/studies/recorded_arms.py IDC OUT [--cases 200] [--only 3 17] [--jobs 2] [--write docs/evidence/RECORDED_ARMS.md] [--note TEXT]
 
-Needs numpy, scipy, mujoco and numba (.ci/install_references). Makes the arms in OUT/cases with their sealed truths in OUT/truth, has IDC diagnose each into OUT/answers, on one processor
+PYTHON has what docs/evidence/peers/requirements.txt names: numpy, scipy, mujoco, numba. Makes the arms in OUT/cases with their sealed truths in OUT/truth, has IDC diagnose each into OUT/answers, on one processor
 each, and goes on where it was stopped. `arms/` is the generator: each arm drawn by its number, of 5 to 8 joints, with one cause over the vocabulary, none, or a law without a name.
 """
 import argparse
 import json
 import os
 import pathlib
+import resource
 import shutil
 import subprocess
 import sys
@@ -20,6 +21,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from arms import scores  # noqa: E402
 
+LONGEST = 150  # A case that takes more of a processor is stopped and is one without an answer [s].
 MAKE = "import sys; sys.path.insert(0, sys.argv[1]); from arms.case import make; make(int(sys.argv[2]), sys.argv[3])"
 
 
@@ -30,13 +32,18 @@ def run(idc, out, number):
     one = {**os.environ, "RAYON_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
     if not (out / "truth" / f"{case}.json").is_file():
         subprocess.run([sys.executable, "-c", MAKE, str(pathlib.Path(__file__).resolve().parent), str(number), str(out)], check=True, env=one)
-    if (answer / "diagnosis.json").is_file():
+    if (answer / "cost.json").is_file():
         return
     begin = time.monotonic()
-    done = subprocess.run([idc, "diagnose", folder, "--out", answer, "--force", "--quiet"], env=one, capture_output=True, text=True)
-    if done.returncode:
-        answer.mkdir(parents=True, exist_ok=True)
-        (answer / "error.txt").write_text(f"exit {done.returncode}\n{done.stderr}")
+    answer.mkdir(parents=True, exist_ok=True)
+    with open(answer / "error.txt", "w+") as said:
+        child = subprocess.Popen([idc, "diagnose", folder, "--out", answer, "--force", "--quiet"], env=one, stdout=subprocess.DEVNULL, stderr=said, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (LONGEST, LONGEST)))
+        _, status, used = os.wait4(child.pid, 0)
+        child.returncode = os.waitstatus_to_exitcode(status)
+    if child.returncode == 0:
+        (answer / "error.txt").unlink()
+    # Seconds of the processor: the wall's are those of whatever else runs.
+    (answer / "cost.json").write_text(json.dumps({"processor_s": used.ru_utime + used.ru_stime, "wall_s": time.monotonic() - begin, "exit": child.returncode}))
     for name in ("comparison.parquet", "balance.parquet", "diagnosis.rrd", "report.html"):
         (answer / name).unlink(missing_ok=True)
     print(f"{case} {time.monotonic() - begin:.0f} s", file=sys.stderr, flush=True)
