@@ -72,9 +72,9 @@ class Case:
                 samples[0] = 0
             self.samples[name] = samples
 
-    def motions(self, numbers, names):
+    def motions(self, numbers, names, every=1):
         plant = Plant(self.arm, numbers)
-        return [move(plant, n, self.paths[n][0], self.samples[n], self.starts[n], self.paths[n][1], self.press_force) for n in names]
+        return [move(plant, n, self.paths[n][0], self.samples[n][::every], self.starts[n], self.paths[n][1], self.press_force) for n in names]
 
     def noise(self):
         b = self.believed
@@ -90,9 +90,10 @@ class Case:
         """Largest RMS of what the effect changes [standard deviations]."""
         numbers, _ = cause.at(size)
         if numbers.stiffness:
-            motions = self.motions(numbers, self.fit)
+            motions = self.motions(numbers, self.fit, 4)
         noise, largest = self.noise(), 0.0
         for m in motions:
+            # Every fourth sample will do.
             there, gone = Plant(self.arm, numbers).read(m), Plant(self.arm, cause.without).read(m)
             for c in self.channels():
                 largest = max(largest, float(np.sqrt(np.mean(((there[c] - gone[c]) / noise[c]) ** 2, axis=0)).max()))
@@ -102,7 +103,7 @@ class Case:
         """The cause at its size: where even its largest natural size is below the least, another place is drawn, then another arm."""
         for _ in range(8):
             cause = causes.draw(rng, self.believed, self.name, self.law)
-            motions = self.motions(cause.without, self.fit)
+            motions = self.motions(cause.without, self.fit, 4)
             most = self.changed(cause, 1.0, motions)
             if most >= LEAST:
                 break
