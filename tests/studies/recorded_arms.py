@@ -21,11 +21,10 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from arms import scores  # noqa: E402
 
-LONGEST = 150  # A case that takes more of a processor is stopped and is one without an answer [s].
 MAKE = "import sys; sys.path.insert(0, sys.argv[1]); from arms.case import make; make(int(sys.argv[2]), sys.argv[3])"
 
 
-def run(idc, out, number):
+def run(idc, out, number, longest):
     """Makes and diagnoses one arm; what is there already stays."""
     case = f"case-{number:03}"
     folder, answer = out / "cases" / case, out / "answers" / case
@@ -37,7 +36,7 @@ def run(idc, out, number):
     begin = time.monotonic()
     answer.mkdir(parents=True, exist_ok=True)
     with open(answer / "error.txt", "w+") as said:
-        child = subprocess.Popen([idc, "diagnose", folder, "--out", answer, "--force", "--quiet"], env=one, stdout=subprocess.DEVNULL, stderr=said, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (LONGEST, LONGEST)))
+        child = subprocess.Popen([idc, "diagnose", folder, "--out", answer, "--force", "--quiet"], env=one, stdout=subprocess.DEVNULL, stderr=said, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (longest, longest)))
         _, status, used = os.wait4(child.pid, 0)
         child.returncode = os.waitstatus_to_exitcode(status)
     if child.returncode == 0:
@@ -56,6 +55,7 @@ def main():
     ap.add_argument("--cases", type=int, default=200)
     ap.add_argument("--only", type=int, nargs="*")
     ap.add_argument("--jobs", type=int, default=2)
+    ap.add_argument("--longest", type=int, default=120, help="seconds of processor after which a case is stopped, and is one without an answer")
     ap.add_argument("--again", action="store_true", help="diagnose those in --only anew")
     ap.add_argument("--write", type=pathlib.Path, help="Markdown file for the tables; its JSON stands beside it")
     ap.add_argument("--note", default="")
@@ -65,12 +65,12 @@ def main():
         for number in numbers:
             shutil.rmtree(a.out / "answers" / f"case-{number:03}", ignore_errors=True)
     with ThreadPoolExecutor(a.jobs) as pool:
-        list(pool.map(lambda number: run(a.idc, a.out, number), numbers))
+        list(pool.map(lambda number: run(a.idc, a.out, number, a.longest), numbers))
     cases = [scores.judged(a.out, number) for number in numbers]
     for case in cases:
         print(scores.line(case))
     print()
-    text = scores.tables(cases, a.note)
+    text = scores.tables(cases, a.longest, a.note)
     print(text)
     if a.write:
         a.write.write_text(text)

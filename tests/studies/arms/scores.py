@@ -82,7 +82,7 @@ def number(v, digits=2):
     return "-" if v is None else f"{v:.{digits}f}"
 
 
-def tables(cases, note):
+def tables(cases, longest, note):
     s = summary(cases)
     lines = ["# Recorded arms of our own generator", "",
              "Written by `tests/studies/recorded_arms.py`. Arms by another engine (MuJoCo's inverse dynamics and force sensor) and another friction law (generalised Maxwell slip with a Stribeck curve",
@@ -93,7 +93,7 @@ def tables(cases, note):
              f"| 95 % intervals that hold the truth, of causes named | 0.88 to 0.99 | {number(s['interval_coverage'])} of {s['intervals']} |",
              f"| median half-width, in tolerances | 1 | {number(s['half_width_in_tolerances_median'])} |",
              f"| seconds of processor a case: median, largest | 20, 60 (two processors) | {number(s['seconds_median'], 1)}, {number(s['seconds_largest'], 1)} |",
-             f"| without an answer | 0 | {s['without_answer']} |", "", "## Reliability", "", "| stated | names | right | share right |", "| --- | --- | --- | --- |"]
+             f"| without an answer after {longest} s of processor | 0 | {s['without_answer']} |", "", "## Reliability", "", "| stated | names | right | share right |", "| --- | --- | --- | --- |"]
     stated = [x for r in cases for x in r["said"] or []]
     for low, high in BANDS:
         own = [x["right"] for x in stated if low < x["confidence"] <= high]
