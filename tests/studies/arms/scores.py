@@ -92,7 +92,7 @@ def tables(cases, longest, note):
              f"| of names stated above 90 %, right | 0.95 | {number(s['of_those_right'], 3)} of {s['stated_above_90_percent']} |",
              f"| 95 % intervals that hold the truth, of causes named | 0.88 to 0.99 | {number(s['interval_coverage'])} of {s['intervals']} |",
              f"| median half-width, in tolerances | 1 | {number(s['half_width_in_tolerances_median'])} |",
-             f"| seconds of processor a case: median, largest | 20, 60 (two processors) | {number(s['seconds_median'], 1)}, {number(s['seconds_largest'], 1)} |",
+             f"| seconds of processor of an answered case: median, largest | 20, 60 (two processors) | {number(s['seconds_median'], 1)}, {number(s['seconds_largest'], 1)} |",
              f"| without an answer after {longest} s of processor | 0 | {s['without_answer']} |", "", "## Reliability", "", "| stated | names | right | share right |", "| --- | --- | --- | --- |"]
     stated = [x for r in cases for x in r["said"] or []]
     for low, high in BANDS:
