@@ -224,6 +224,16 @@ impl Quantity {
     /// A change that is small beside what it usually is.
     #[must_use]
     pub fn step(self, value: f64) -> f64 {
+        // What something is divided by keeps clear of nothing.
+        let divisor = match self {
+            Self::BristleLength(_) => Some(1e-6),
+            Self::StribeckVelocity(_) | Self::LawWidth(_) => Some(1e-3),
+            Self::WarmTime(_) => Some(1e-2),
+            _ => None,
+        };
+        if let Some(usual) = divisor {
+            return f64::min(usual, 0.25 * value.abs()).max(f64::MIN_POSITIVE);
+        }
         let usual = match self {
             Self::LinkMass(_) | Self::PayloadMass | Self::LoadMass | Self::ToolMass => 1e-2,
             Self::LinkCentre(..)
@@ -235,14 +245,12 @@ impl Quantity {
             | Self::WrenchGain(_)
             | Self::Crosstalk(..)
             | Self::LoadFriction(_)
-            | Self::StribeckVelocity(_)
             | Self::WarmFraction(_) => 1e-3,
-            Self::BristleLength(_) => 1e-6,
             Self::Tilt(_) | Self::SensorRotation | Self::EncoderOffset(_) => 1e-4,
             Self::Compliance(_) => 1e-7,
             Self::Delay => 1e-3,
-            Self::RippleCycles(_) | Self::LawPlace(_) | Self::LawWidth(_) => 1e-3,
-            Self::PushStart(_) | Self::PushEnd(_) | Self::WarmTime(_) => 1e-2,
+            Self::RippleCycles(_) | Self::LawPlace(_) => 1e-3,
+            Self::PushStart(_) | Self::PushEnd(_) => 1e-2,
             _ => 1e-2,
         };
         f64::max(usual, 1e-4 * value.abs())

@@ -161,6 +161,7 @@ impl Prepared {
             answer,
             improved: &improved,
             prediction: prediction.as_deref(),
+            beside: &[],
             picture: None,
             fit_picture: picture.as_deref(),
             scene: None,

@@ -165,7 +165,10 @@ impl Search<'_> {
                 of.effect.simpler() == Some(other)
                     || unnamed(of.effect) && !unnamed(other) && other.joint() == of.effect.joint()
             };
-            let enough = |other: &Tried| is_simpler(other.effect) && other.gain > ENOUGH * of.gain;
+            // Both weighed alike: what the simpler one lacks of the other.
+            let lacks = |other: &Tried| gain(&other.hypothesis.fit, &of.hypothesis.fit);
+            let enough =
+                |other: &Tried| is_simpler(other.effect) && lacks(other) < (1.0 - ENOUGH) * of.gain;
             !tried.iter().any(enough)
         };
         let most = |effect: ArmEffect| {
