@@ -4,19 +4,26 @@
 //! F [A] = F [N m]/g
 //! ```
 //!
-//! g torque per ampere. Where friction alone loads a joint it is known better in amperes than in newton metres, whose interval has the gain's share in it.
+//! g torque per ampere. Beside the numbers of the friction's own form stands the dry part of the straight line through all that rubs at the joint where it moves,
+//!
+//! ```text
+//! F_all = F_line sign(q') + F_v q' + c
+//! ```
+//!
+//! by least squares, as a controller's friction compensation takes it. Where friction alone loads a joint it is known better in amperes than in newton metres, whose interval has the gain's share in it.
 
 use std::fmt::Write as _;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 use super::estimate::{FORM, HALF_WIDTH, covariance};
+use super::evidence::slides;
 use super::fit::Fit;
 use super::input::ArmInput;
 use crate::arm::JointKind;
 use crate::diagnosis::answer::words::with_interval_in_si;
 use crate::quantity::significant;
-use crate::recorded_arm::simulate::Channel;
+use crate::recorded_arm::simulate::{Channel, moments};
 use crate::recorded_arm::{ArmParameters, Drive, Quantity};
 
 /// A number with its interval; none where it is exact.
@@ -39,6 +46,10 @@ pub struct DriveNumbers {
     pub mechanical: [DriveNumber; 3],
     /// Dry friction [A], viscous friction [A s/rad or A s/m] and gain [N m/A or N/A], where currents are logged.
     pub electrical: Option<[DriveNumber; 3]>,
+    /// Dry friction of the straight line through all that rubs [N m or N]; none of a joint that does not move both ways.
+    pub dry_of_line: Option<f64>,
+    /// Torque per ampere [N m/A or N/A]; 1 where torques are logged.
+    pub gain: f64,
     /// Largest torque or force in the recordings [N m or N].
     pub largest_torque: f64,
     /// What the maker allows [N m or N]; infinite where the URDF does not say.
@@ -86,6 +97,8 @@ pub fn drives(input: &ArmInput, fit: &Fit) -> Vec<DriveNumbers> {
                 electrical: drive
                     .logs_current
                     .then(|| electrical.map(|made| number(joint, made))),
+                dry_of_line: dry_of_line(input, fit, joint),
+                gain: 1.0 / drive.inverse_gain,
                 largest_torque,
                 effort: own.effort,
                 largest_speed,
@@ -127,6 +140,29 @@ fn number(
     }
 }
 
+/// Dry friction of the straight line through all that rubs at a joint.
+fn dry_of_line(input: &ArmInput, fit: &Fit, joint: usize) -> Option<f64> {
+    let drive = &fit.arm.drives[joint];
+    let laws = || fit.arm.laws.iter().filter(|law| law.joint == joint);
+    let (mut a, mut b) = (Matrix3::zeros(), Vector3::zeros());
+    for (r, recording) in input.recordings.iter().enumerate() {
+        let (bristles, rigid) = fit.course.parts(r);
+        let all = moments(drive, &recording.motion, bristles, &rigid.carried, joint);
+        for (moment, slides) in all.zip(slides(input, r, joint)) {
+            if slides {
+                let own = moment.dry + drive.viscous * moment.speed;
+                let rubs = own + laws().map(|law| law.torque(&moment)).sum::<f64>();
+                let row = Vector3::new(moment.speed.signum(), moment.speed, 1.0);
+                a += row * row.transpose();
+                b += row * rubs;
+            }
+        }
+    }
+    a.cholesky()
+        .map(|a| a.solve(&b)[0])
+        .filter(|dry| dry.is_finite())
+}
+
 /// Largest torque and speed of a joint in the recordings.
 fn largest(input: &ArmInput, arm: &ArmParameters, joint: usize) -> [f64; 2] {
     let most = |values: &[f64]| {
@@ -160,7 +196,7 @@ pub fn drives_text(drives: &[DriveNumbers]) -> String {
     for column in COLUMNS {
         let _ = write!(text, ",{column},{column}_low,{column}_high");
     }
-    text += ",largest_torque_n_m,effort_limit_n_m,largest_speed_rad_per_s,speed_limit_rad_per_s\n";
+    text += ",dry_friction_line_n_m,dry_friction_line_a,largest_torque_n_m,effort_limit_n_m,largest_speed_rad_per_s,speed_limit_rad_per_s\n";
     let shown = |value: f64| match value.is_finite() {
         true => significant(value, 5),
         false => String::new(),
@@ -182,7 +218,11 @@ pub fn drives_text(drives: &[DriveNumbers]) -> String {
                 }
             };
         }
+        let line = drive.dry_of_line.unwrap_or(f64::NAN);
+        let amperes = drive.electrical.map_or(f64::NAN, |_| line / drive.gain);
         let limits = [
+            line,
+            amperes,
             drive.largest_torque,
             drive.effort,
             drive.largest_speed,
