@@ -317,7 +317,7 @@ fn bad_input_is_one_line_and_writes_nothing() {
         ),
         (
             &|b| std::fs::remove_file(b.path("case/rig.toml")).unwrap(),
-            "case holds no rig.toml or arm.toml; expected a folder with one",
+            "case holds no rig.toml, arm.toml or postures.toml; expected a folder with one",
         ),
         (
             &|b| press(&|t| of_column(t, 1, |p| p * 1e-5), b),

@@ -7,7 +7,7 @@ import numpy as np
 
 from . import causes, motion
 from .bodies import Arm
-from .believed import Believed
+from .nominal import Nominal
 from .plant import Plant, move
 
 LEAST, MOST = 3.0, 50.0  # Sizes: largest RMS of what the effect changes in one channel and recording [standard deviations of its sensor].
@@ -28,7 +28,7 @@ def deck():
 
 
 class Case:
-    """An arm, what is believed of it, its paths, and what is concealed."""
+    """An arm, its nominal values, its paths, and what is concealed."""
 
     def __init__(self, number, name, law):
         self.number, self.name, self.law = number, name, law
@@ -47,7 +47,7 @@ class Case:
                 break
         needs = name in causes.NEEDS_SENSOR
         has_links = name == "compliant_joint" or (name != "joint_encoder_offset" and rng.random() < 0.12)
-        self.arm, self.believed = arm, Believed(rng, arm, needs or rng.random() < 0.3, has_links)
+        self.arm, self.nominal = arm, Nominal(rng, arm, needs or rng.random() < 0.3, has_links)
         self.rate = int(rng.choice([100, 125, 250], p=[0.45, 0.45, 0.1]))
         self.uneven = rng.random() < 0.2
         self.cause, self.size, self.sigma = None, None, 0.0
@@ -56,7 +56,7 @@ class Case:
     def _paths(self, rng):
         arm = self.arm
         self.paths = {"fourier": (motion.fourier(rng, arm, 20.0, rng.uniform(1.1, 1.5)), None), "slow": (motion.slow(rng, arm), None), "still": (motion.still(rng, arm), None)}
-        if self.believed.sensor and rng.random() < 0.5:
+        if self.nominal.sensor and rng.random() < 0.5:
             self.paths["work"] = motion.work(rng, arm)
         self.press_force = rng.uniform(25, 60)
         self.fit = list(self.paths)
@@ -77,14 +77,14 @@ class Case:
         return [move(plant, n, self.paths[n][0], self.samples[n][::every], self.starts[n], self.paths[n][1], self.press_force) for n in names]
 
     def noise(self):
-        b = self.believed
+        b = self.nominal
         out = {"drive": b.noise, "link": np.full(self.arm.n, 2e-5)}
         if b.sensor:
             out["wrench"] = np.repeat(b.sensor["noise"], 3)
         return out
 
     def channels(self):
-        return ("drive", *(["link"] if self.believed.with_link_encoders else []), *(["wrench"] if self.believed.sensor else []))
+        return ("drive", *(["link"] if self.nominal.with_link_encoders else []), *(["wrench"] if self.nominal.sensor else []))
 
     def changed(self, cause, size, motions):
         """Largest RMS of what the effect changes [standard deviations]."""
@@ -102,7 +102,7 @@ class Case:
     def _conceal(self, rng):
         """The cause at its size: where even its largest natural size is below the least, another place is drawn, then another arm."""
         for _ in range(8):
-            cause = causes.draw(rng, self.believed, self.name, self.law)
+            cause = causes.draw(rng, self.nominal, self.name, self.law)
             motions = self.motions(cause.without, self.fit, 4)
             most = self.changed(cause, 1.0, motions)
             if most >= LEAST:
@@ -133,7 +133,7 @@ class Case:
 
     def columns(self, m, reading, predict):
         """Columns of a log with noise, by name."""
-        rng, b, arm = self.rng, self.believed, self.arm
+        rng, b, arm = self.rng, self.nominal, self.arm
         out = {"time_s": (m.time, 4)}
         for j in range(arm.n):
             out[f"joint_{j + 1}_command_{self.unit(j)}"] = (m.command[m.samples, j], 6)
@@ -160,15 +160,15 @@ class Case:
         return f"joint_{k + 1}_{what}"
 
     def numbers(self):
-        return self.cause.at(self.size)[0] if self.cause else self.believed.truth
+        return self.cause.at(self.size)[0] if self.cause else self.nominal.truth
 
     def write(self, cases, truths):
         folder = cases / f"case-{self.number:03}"
         folder.mkdir(parents=True, exist_ok=True)
         truths.mkdir(parents=True, exist_ok=True)
         urdf = f"{self.arm.kind}.urdf"
-        (folder / urdf).write_text(self.arm.urdf(2.5 * self.believed.peak + 5 * self.believed.coulomb))
-        (folder / "arm.toml").write_text(self.believed.toml(urdf, self.rate, self.fit, "work" in self.fit))
+        (folder / urdf).write_text(self.arm.urdf(2.5 * self.nominal.peak + 5 * self.nominal.coulomb))
+        (folder / "arm.toml").write_text(self.nominal.toml(urdf, self.rate, self.fit, "work" in self.fit))
         numbers = self.numbers()
         plant = Plant(self.arm, numbers)
         for m in self.motions(numbers, list(self.paths)):

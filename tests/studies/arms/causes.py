@@ -13,7 +13,7 @@ LAWS = ("tight_spot", "cable_catches", "two_ripples", "churning_grease", "draggi
 
 @dataclass
 class Drawn:
-    """A cause: `without` it, and `at(size)`, size from 0 to 1, with it: numbers, parameters. `belief` edits what is believed."""
+    """A cause: `without` it, and `at(size)`, size from 0 to 1, with it: numbers, parameters. `belief` edits what is nominal."""
 
     name: str
     subsystem: str

@@ -1,4 +1,4 @@
-"""What an owner believes of an arm, with tolerances, and what it really is: anywhere within them."""
+"""What an owner states of an arm, with tolerances, and what it really is: anywhere within them."""
 import mujoco
 import numpy as np
 
@@ -15,7 +15,7 @@ def inside(rng, value, tolerance):
     return np.asarray(value) * (1 + tolerance * rng.uniform(-0.98, 0.98, np.shape(value)))
 
 
-class Believed:
+class Nominal:
     """Values and tolerances of arm.toml, and `truth`, the numbers that the arm has where nothing is concealed."""
 
     def __init__(self, rng, arm, with_sensor, with_link_encoders):
