@@ -1,7 +1,7 @@
 //! From a search to an answer: effects by their names, places and numbers, and how sure each is.
 
 use super::effect::{ArmEffect, Candidate};
-use super::estimate::{Number, covariance, numbers, turned};
+use super::estimate::{Number, covariance, declared, numbers, turned};
 use super::input::ArmInput;
 use super::search::{Found, Stage};
 use crate::diagnosis::answer::estimate::{Estimate, Limit};
@@ -94,7 +94,14 @@ pub fn effects(input: &ArmInput, found: &Found) -> Vec<FoundEffect> {
             }
             _ => numbers(&found.best.fit, &spread, effect),
         };
-        all.push(listed(input, found, effect.effect, reported));
+        // What the description states is the number without the effect: an interval that holds it casts doubt.
+        let declared = declared(&input.nominal, effect).into_iter().map(Some);
+        let declared = declared.chain(std::iter::repeat(None));
+        let mut numbers: Vec<(String, Estimate)> = reported.iter().map(estimate).collect();
+        for ((_, number), without) in numbers.iter_mut().zip(declared) {
+            number.without = without.filter(|without| without.is_finite());
+        }
+        all.push(listed(input, found, effect.effect, numbers));
     }
     all
 }
@@ -136,10 +143,9 @@ fn listed(
     input: &ArmInput,
     found: &Found,
     effect: ArmEffect,
-    reported: Vec<Number>,
+    mut numbers: Vec<(String, Estimate)>,
 ) -> FoundEffect {
     let name = name_of(effect);
-    let mut numbers: Vec<(String, Estimate)> = reported.iter().map(estimate).collect();
     for (_, number) in &mut numbers {
         number.at_limit = limit_of(found, effect, number);
     }

@@ -72,6 +72,19 @@ pub fn numbers(fit: &Fit, covariance: &DMatrix<f64>, effect: &Candidate) -> Vec<
         .collect()
 }
 
+/// Numbers of an effect as a description has them, in the same order; NaN where it has none.
+#[must_use]
+pub fn declared(arm: &ArmParameters, effect: &Candidate) -> Vec<f64> {
+    match effect.effect {
+        // A description states no push.
+        ArmEffect::Push(_) => Vec::new(),
+        _ => reported(effect)
+            .iter()
+            .map(|(_, value)| value(arm))
+            .collect(),
+    }
+}
+
 /// Whether an effect is a law of a textbook: not a mass, a gain or a number of a sensor.
 fn is_law_of_textbook(effect: ArmEffect) -> bool {
     matches!(

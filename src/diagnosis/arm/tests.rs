@@ -1,11 +1,17 @@
 //! Arms whose friction is another law than the model's: what is planted in them is found, and in one without a fault nothing.
 
+use super::answer::effects;
 use super::contact::touching;
 use super::diagnosed::diagnose;
 use super::drives::{DriveNumber, drives_text};
+use super::effect::{ArmEffect, candidates};
+use super::evidence::Evidence;
+use super::fit::Columns;
 use super::held::held_pushes;
 use super::input::{ArmInput, ArmRecording};
+use super::search::search;
 use crate::arm::test_chains::random_chain;
+use crate::diagnosis::answer::doubt::Doubt;
 use crate::diagnosis::answer::{Answer, Verdict};
 use crate::recorded_arm::motion::Motion;
 use crate::recorded_arm::simulate::{Channel, RigidCourse, all_bristles, readings};
@@ -177,11 +183,14 @@ fn the_table_of_drives_holds_the_truth_and_knows_friction_better_in_amperes() {
             (high - low) / number.value
         };
         assert!(share(amperes) <= share(dry));
+        // What rubs is a straight line here, so that its dry part is the friction's own.
+        let line = found.dry_of_line.unwrap();
+        assert!((line - own.coulomb).abs() < 0.05 * own.coulomb, "{line}");
         assert_eq!(found.effort, 100.0);
     }
     let text = drives_text(&drives);
     let counts = text.lines().map(|line| line.split(',').count());
-    assert!(counts.clone().all(|count| count == 24), "{text}");
+    assert!(counts.clone().all(|count| count == 26), "{text}");
     assert_eq!(counts.count(), 1 + JOINTS);
 }
 
@@ -262,4 +271,26 @@ fn exchanged_bodies_are_carried_as_a_whole_recursion_says() {
     }
     Quantity::EncoderOffset(1).set(&mut other, 0.01);
     assert!(!arm.moves_as(&other));
+}
+
+/// A spring where nothing pulls has an interval that holds no stiffness at all: it is doubted, and not stated as likely.
+#[test]
+fn an_effect_whose_interval_holds_what_is_declared_is_doubted() {
+    let input = input(&nominal(), false);
+    let evidence = Evidence::of(&input, &[]);
+    let mut found = search(&evidence, &mut |_| {});
+    assert!(found.best.effects.is_empty());
+    let all = candidates(&input);
+    let spring = all.iter().find(|c| c.effect == ArmEffect::DressPack(1));
+    let spring = spring.expect("among the candidates");
+    let columns = &mut Columns::default();
+    found.best = found.best.with(&evidence, spring, &found.scales, columns);
+    let reported = effects(&input, &found);
+    assert_eq!(reported.len(), 1);
+    assert!(
+        reported[0].doubts.contains(&Doubt::HoldsNeutral),
+        "{:?}",
+        reported[0]
+    );
+    assert!(reported[0].confidence < 0.5);
 }
