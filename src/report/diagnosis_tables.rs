@@ -31,6 +31,8 @@ pub(super) fn how_well<'a>(answer: &Answer) -> Option<Section<'a>> {
 
 /// Departure of each channel of each recording, in multiples of the reference noise.
 fn misfit(misfit: &[ChannelMisfit], reference_noise: &str) -> Option<Table> {
+    // Of one recording, and where no other is fitted, none was left out.
+    let has_left_out = misfit.iter().any(|m| m.left_out_sigmas.is_some());
     let row = |(index, m): (usize, &ChannelMisfit)| {
         let (words, unit, factor) = of_column(&m.channel);
         let number = |key: &str, value: f64, unit: &str| {
@@ -39,7 +41,9 @@ fn misfit(misfit: &[ChannelMisfit], reference_noise: &str) -> Option<Table> {
             Cell::from(number.written(significant(value, 3)))
         };
         let sigmas = |key: &str, value: f64| number(key, value, "");
-        vec![
+        let left_out =
+            (m.left_out_sigmas).map_or(Cell::from("–"), |value| sigmas("left_out_sigmas", value));
+        let cells = [
             Cell::from(m.recording.clone()),
             Cell::from(words),
             Cell::from(m.samples.to_string()),
@@ -48,16 +52,22 @@ fn misfit(misfit: &[ChannelMisfit], reference_noise: &str) -> Option<Table> {
             sigmas("believed_sigmas", m.nominal_sigmas),
             sigmas("tolerated_sigmas", m.tolerated_sigmas),
             sigmas("improved_sigmas", m.improved_sigmas),
-            (m.left_out_sigmas).map_or(Cell::from("–"), |value| sigmas("left_out_sigmas", value)),
-        ]
+        ];
+        let left_out = has_left_out.then_some(left_out);
+        cells.into_iter().chain(left_out).collect()
     };
     (!misfit.is_empty()).then(|| {
+        let (more, column) = match has_left_out {
+            true => (" The last column is a fit to the other recordings.", " | #not fitted to, σ"),
+            false => ("", ""),
+        };
         let caption = format!(
-            "What the models leave of each channel: root mean square, then a robust one in multiples of {reference_noise} (1 is as much). The last column is a fit to the other recordings."
+            "What the models leave of each channel: root mean square, then a robust one in multiples of {reference_noise} (1 is as much).{more}"
         );
+        let columns = format!("recording | channel | #readings | #nominal | #improved | #nominal, σ | #within tolerances, σ | #improved, σ{column}");
         Table::new(
             &caption,
-            Column::list("recording | channel | #readings | #nominal | #improved | #nominal, σ | #within tolerances, σ | #improved, σ | #not fitted to, σ"),
+            Column::list(&columns),
             misfit.iter().enumerate().map(row).collect(),
         )
     })

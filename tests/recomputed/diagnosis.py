@@ -378,7 +378,7 @@ class Examination:
                     if shown:
                         self.number(f"{where}: {row}", cells[shown].split()[0], factor * size)
                     self.number(f"{where}: {row}", cells[sigma], sigmas)
-                if cells["not fitted to, σ"] != "–":
+                if cells.get("not fitted to, σ", "–") != "–":
                     self.number(f"{where}: {row}", cells["not fitted to, σ"], of.size(rows, "left_out", column)[1])
         if "within tolerances" in head:
             for row in rows_[1:]:
