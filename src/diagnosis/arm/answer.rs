@@ -2,13 +2,16 @@
 
 use super::effect::{ArmEffect, Candidate};
 use super::estimate::{Number, covariance, declared, numbers, turned};
+use super::fit::Parameter;
 use super::input::ArmInput;
 use super::search::{Found, Stage};
+use crate::diagnosis::answer::doubt::Doubt;
 use crate::diagnosis::answer::estimate::{Estimate, Limit};
 use crate::diagnosis::answer::parameters::{Parameters, Place};
 use crate::diagnosis::answer::statements::{doubts_of, stated};
 use crate::diagnosis::answer::{Alternative, FoundEffect, FoundLaw};
 use crate::effects::UNLISTED;
+use crate::recorded_arm::Quantity;
 use crate::recorded_arm::law::{Factor, JointLaw, Shape, Variable};
 use crate::recorded_arm::vocabulary::arm_effect;
 use crate::recorded_arm::wrench::CHANNELS;
@@ -73,6 +76,9 @@ fn place_of(input: &ArmInput, effect: ArmEffect) -> Vec<(String, Place)> {
         _ => Vec::new(),
     }
 }
+
+/// Share of the links' tolerated numbers at their bounds from which the links are not as described [1].
+const EXHAUSTED: f64 = 0.2;
 
 /// Effects of a search as they are reported: what acts at one joint without a name is one.
 #[must_use]
@@ -150,7 +156,13 @@ fn listed(
         number.at_limit = limit_of(found, effect, number);
     }
     let plain: Vec<Estimate> = numbers.iter().map(|(_, number)| *number).collect();
-    let doubts = doubts_of(&plain);
+    let mut doubts = doubts_of(&plain);
+    if acts_as_links_do(effect)
+        && are_links_exhausted(found)
+        && !doubts.contains(&Doubt::AtEndOfRange)
+    {
+        doubts.push(Doubt::AtEndOfRange);
+    }
     FoundEffect {
         name: name.to_owned(),
         key: None,
@@ -164,6 +176,31 @@ fn listed(
         law: None,
         unlisted: None,
     }
+}
+
+/// Whether an effect acts as masses and centres of the links do.
+fn acts_as_links_do(effect: ArmEffect) -> bool {
+    use ArmEffect as E;
+    matches!(
+        effect,
+        E::Payload | E::LinkMass(_) | E::BaseTilt | E::DressPack(_)
+    )
+}
+
+/// Whether much of what is tolerated of the links ends at its bounds even so: then the links are not as described, and what acts as they do stands for that.
+fn are_links_exhausted(found: &Found) -> bool {
+    let fit = &found.best.fit;
+    let of_links = |p: &&Parameter| {
+        p.prior.is_some() && matches!(p.quantity, Quantity::LinkMass(_) | Quantity::LinkCentre(..))
+    };
+    let all = fit.parameters.iter().filter(of_links);
+    let is_at_bound = |p: &&Parameter| {
+        let value = p.quantity.value(&fit.arm);
+        let near = 1e-3 * (p.bounds[1] - p.bounds[0]);
+        p.bounds.iter().any(|bound| (value - bound).abs() < near)
+    };
+    let (count, at_bounds) = (all.clone().count(), all.filter(is_at_bound).count());
+    at_bounds as f64 > EXHAUSTED * count as f64
 }
 
 /// The end of what a link's mass may be, where its interval reaches that: then it may stand for something else.
@@ -221,7 +258,6 @@ fn unlisted(input: &ArmInput, found: &Found, joint: usize, own: &[&Candidate]) -
 
 /// A law as it was fitted.
 fn fitted_law(found: &Found, candidate: &Candidate) -> Option<JointLaw> {
-    use crate::recorded_arm::Quantity;
     let place = candidate.free.iter().find_map(|p| match p.quantity {
         Quantity::LawAmplitude(law, _) => Some(law),
         _ => None,

@@ -294,3 +294,41 @@ fn an_effect_whose_interval_holds_what_is_declared_is_doubted() {
     );
     assert!(reported[0].confidence < 0.5);
 }
+
+/// Links that are nowhere near what the description tolerates are no payload, no leaning base and no hose: a real arm's free path was given a load of 0.9 kg.
+#[test]
+fn links_beyond_their_tolerances_are_not_stated_as_a_load() {
+    let mut truth = nominal();
+    for link in 0..JOINTS {
+        for axis in 0..3 {
+            let quantity = Quantity::LinkCentre(link, axis);
+            let sign = if (link + axis) % 2 == 0 { 1.0 } else { -1.0 };
+            quantity.set(&mut truth, quantity.value(&nominal()) + 0.02 * sign);
+        }
+    }
+    let mut input = input(&truth, false);
+    let centres = (0..JOINTS).flat_map(|link| (0..3).map(move |axis| (link, axis)));
+    input.tolerated.extend(centres.map(|(link, axis)| {
+        let quantity = Quantity::LinkCentre(link, axis);
+        let value = quantity.value(&input.nominal);
+        Tolerated {
+            quantity,
+            bounds: [value - 0.002, value + 0.002],
+        }
+    }));
+    let answer = diagnose(&input, &mut |_| {}).answer;
+    let as_links = [
+        "payload",
+        "link_mass_error",
+        "base_tilt",
+        "dress_pack_spring",
+    ];
+    let effects = answer.effects.iter();
+    let all: Vec<_> = effects
+        .filter(|effect| as_links.contains(&effect.name.as_str()))
+        .collect();
+    assert!(!all.is_empty(), "nothing stands for the links: {answer:?}");
+    for effect in all {
+        assert!(effect.confidence < 0.5, "{effect:?}");
+    }
+}
