@@ -153,6 +153,20 @@ pub fn add_change_of_body(
     }
 }
 
+/// Takes from joint torques what a force [N] and a moment [N m] from outside do, about the origin of the last link's frame and in its axes.
+pub fn add_outside_wrench(
+    chain: &KinematicChain,
+    links: &[LinkState],
+    (force, moment): (DVec3, DVec3),
+    out: &mut [f64],
+) {
+    let mut wrench = (-force, -moment);
+    for (index, (joint, link)) in chain.joints.iter().zip(links).enumerate().rev() {
+        out[index] += taken_by(joint, wrench);
+        wrench = link.in_parent(wrench);
+    }
+}
+
 /// Joint torques [N m] and forces [N] that give accelerations `qdd` at positions `q` and speeds `qd`.
 ///
 /// `world_from_base` turns base axes into world axes, `gravity` is in world axes [m/s2]. The slices must

@@ -121,7 +121,12 @@ pub(super) struct ArmLog {
 
 /// Reads a log of an arm.
 pub(super) fn read(arm: &ArmFile, folder: &Path, name: &str) -> Result<ArmLog, CaseError> {
-    let path = folder.join(name);
+    read_log_of(arm, &folder.join(name), name)
+}
+
+/// Reads a log of an arm from a file, with a name for people.
+pub(super) fn read_log_of(arm: &ArmFile, path: &Path, name: &str) -> Result<ArmLog, CaseError> {
+    let path = path.to_owned();
     let wrench: Vec<String> = (0..WRENCH.len()).map(wrench_column).collect();
     let of_wrench = |column: &str| wrench.iter().position(|own| own == column);
     let wanted = |column: &str| joint_signal(arm, column).is_some() || of_wrench(column).is_some();

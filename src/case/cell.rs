@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::arm_prediction::arm_prediction;
+use super::cell_drives::CellDrives;
 use super::error::CaseError;
 use crate::diagnosis::answer::details::PredictionError;
 use crate::diagnosis::fit::free::{Free, Prior};
@@ -39,6 +40,8 @@ pub(super) struct CellCase {
     pub servo: Option<ServoLink>,
     /// Friction of the joints, from their drives' torques.
     pub frictions: Vec<JointFriction>,
+    /// Drives and wrench, where the cell names an arm file.
+    pub arm: Option<CellDrives>,
     /// Errors of what is said of the arm in the recording that is to be predicted.
     pub of_arm: Vec<PredictionError>,
 }
@@ -154,7 +157,18 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, CaseErr
         (Some(servo), Some(_)) => servo.bandwidth,
         _ => scenario.nominal.cell.servo_bandwidth,
     };
-    let frictions = frictions(cell, &known, &nominal);
+    let files = |(name, file, _): &Named| (name.clone(), PathBuf::from(file));
+    let files: Vec<(String, PathBuf)> = known.iter().chain(&unseen).map(files).collect();
+    let files: Vec<(&str, &Path)> = (files.iter())
+        .map(|(name, file)| (name.as_str(), file.as_path()))
+        .collect();
+    let (of_known, of_unseen) = files.split_at(known.len());
+    let arm = CellDrives::read(cell, of_known, of_unseen.first().copied())?;
+    // An arm file says more of the drives than their dry friction.
+    let frictions = match arm {
+        Some(_) => Vec::new(),
+        None => frictions(cell, &known, &nominal),
+    };
     let of_arm = unseen.as_ref().map(|(name, _, recording)| {
         let drives = drives(cell, recording);
         arm_prediction(cell, name, recording, servo.as_ref(), &frictions, &drives)
@@ -195,6 +209,7 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, CaseErr
         axes: axes.into_iter().next(),
         servo,
         frictions,
+        arm,
         of_arm: of_arm.unwrap_or_default(),
     })
 }

@@ -12,6 +12,9 @@ pub const DRIVES: &str = "drives.csv";
 /// Name of a recorded arm's URDF with identified numbers.
 pub const IDENTIFIED: &str = "identified.urdf";
 
+/// Name of the improved description of a cell's arm.
+pub const IMPROVED_ARM: &str = "improved_arm.toml";
+
 /// Result of a diagnosis, with the files that it comes to.
 pub struct Diagnosed {
     /// The finding.

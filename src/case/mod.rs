@@ -6,6 +6,7 @@ mod arm_recording;
 mod band;
 mod cell;
 mod cell_account;
+mod cell_drives;
 mod diagnosed;
 mod error;
 mod flange_prediction;
@@ -27,7 +28,7 @@ pub use arm::{
 };
 pub use band::{Predicted, predicted_by};
 pub use cell::is_cell_case;
-pub use diagnosed::{DRIVES, Diagnosed, IDENTIFIED, IMPROVED};
+pub use diagnosed::{DRIVES, Diagnosed, IDENTIFIED, IMPROVED, IMPROVED_ARM};
 pub use error::CaseError;
 pub use flange_prediction::{FlangePrediction, predict_flange_run};
 pub use postures::{
@@ -57,7 +58,9 @@ use crate::diagnosis::search::progress::Observer;
 use crate::diagnosis::settings::Settings;
 use crate::effects::own_effect;
 use crate::flange::FittedFlange;
-use crate::plant::{Channel, DeviceParts, LawText, OwnLaw, PlantParameters, simulate};
+use crate::plant::{
+    Channel, DeviceParts, LawText, OwnLaw, PlantInputs, PlantParameters, simulate,
+};
 use crate::recording::csv::columns_text;
 use crate::recording::provenance::Provenance;
 use crate::replay::LoadedCell;
@@ -327,7 +330,8 @@ pub fn diagnose(
             let diagnosis =
                 search::diagnose(&read.input, prepare(&read.input)?, settings, observer);
             let effects = improved::written(&cell.scenario.effects, &diagnosis);
-            let improved = improved_cell_text(&cell.scenario, &effects);
+            let arm_file = read.arm.as_ref().map(|_| IMPROVED_ARM);
+            let improved = improved_cell_text(&cell.scenario, &effects, arm_file);
             let written = improved.as_ref().map(|_| ());
             let plant = written
                 .map(|()| Model::of(&diagnosis))
@@ -337,6 +341,13 @@ pub fn diagnose(
             let mut diagnosed = of_plant(of_data, diagnosis, improved, plant, start);
             if let Some(diagnosis) = &diagnosed.diagnosis {
                 cell_account::add_cell(&mut diagnosed.answer.details, diagnosis, cell, read);
+            }
+            if let (Some(arm), Some(plant)) = (&read.arm, diagnosed.plant.clone()) {
+                let known: Vec<&PlantInputs> = (read.input.recordings.iter())
+                    .map(|own| &own.recorded.inputs)
+                    .collect();
+                let unseen = read.input.unseen.as_ref().map(|own| &own.recorded.inputs);
+                arm.add_to(&mut diagnosed, cell, (&plant, &known, unseen))?;
             }
             diagnosed
         }

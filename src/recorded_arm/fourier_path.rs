@@ -108,6 +108,7 @@ impl FourierPath {
             speed: of(1),
             acceleration: of(2),
             time,
+            outside: None,
         }
     }
 }

@@ -9,6 +9,7 @@
 //! (1988), 699.
 
 use super::filter::low_pass;
+use super::outside::OutsideWrench;
 use super::spline::Spline;
 use crate::stats::median;
 use std::f64::consts::TAU;
@@ -28,6 +29,8 @@ pub struct Motion {
     pub speed: Vec<Vec<f64>>,
     /// Accelerations by joint and sample [rad/s2 or m/s2].
     pub acceleration: Vec<Vec<f64>>,
+    /// What acts on the flange beside the bodies of the description, by sample; none where nothing does, or nobody knows.
+    pub outside: Option<Vec<OutsideWrench>>,
 }
 
 /// Median time between samples [s].
@@ -41,6 +44,9 @@ pub fn sample_time(time: &[f64]) -> f64 {
 const CUT_OFF: [f64; 2] = [25.0, 4.0];
 /// Noise of the accelerations that is borne, as a share of their own root mean square [1].
 const BORNE: f64 = 0.02;
+
+/// Share of the cut-off up to which accelerations are as they were [1].
+const SLOW: f64 = 0.6;
 
 /// Root mean square of accelerations below which their noise does not matter more [rad/s2].
 const SMALL: f64 = 0.3;
@@ -152,6 +158,7 @@ impl Motion {
             position: Vec::new(),
             speed: Vec::new(),
             acceleration: Vec::new(),
+            outside: None,
         };
         let grid = Grid::of(time);
         for positions in measured {
@@ -187,6 +194,39 @@ impl Motion {
             .min(1.0)
     }
 
+    /// Accelerations without what changes so fast that the low-pass of the positions may have smeared it, by joint and sample [rad/s2 or m/s2].
+    #[must_use]
+    pub fn slow_acceleration(&self) -> Vec<Vec<f64>> {
+        if !self.cut_off.is_finite() {
+            return self.acceleration.clone();
+        }
+        let grid = Grid::of(&self.time);
+        let all = self.acceleration.iter();
+        all.map(|own| {
+            let even = grid.there(&self.time, own);
+            let slow = low_pass(&even, 1.0 / grid.step, SLOW * self.cut_off);
+            grid.back(&self.time, slow)
+        })
+        .collect()
+    }
+
+    /// Every so manyth of its samples.
+    #[must_use]
+    pub fn every(&self, apart: usize) -> Self {
+        let of = |all: &[Vec<f64>]| -> Vec<Vec<f64>> {
+            all.iter().map(|own| every(own, apart)).collect()
+        };
+        Self {
+            time: every(&self.time, apart),
+            recording: self.recording,
+            cut_off: self.cut_off,
+            position: of(&self.position),
+            speed: of(&self.speed),
+            acceleration: of(&self.acceleration),
+            outside: self.outside.as_ref().map(|all| every(all, apart)),
+        }
+    }
+
     /// Number of samples.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -198,6 +238,12 @@ impl Motion {
     pub fn is_empty(&self) -> bool {
         self.time.is_empty()
     }
+}
+
+/// Every so manyth of all.
+#[must_use]
+pub fn every<T: Copy>(all: &[T], apart: usize) -> Vec<T> {
+    all.iter().step_by(apart).copied().collect()
 }
 
 /// First and second derivatives of samples at an even step [s].

@@ -4,11 +4,14 @@ use super::bristles::{bristles, varying};
 use super::delay::delayed;
 use super::drive::{JointMoment, own_torque, sliding};
 use super::motion::Motion;
+use super::outside::OutsideWrench;
 use super::parameters::{ArmParameters, Drive};
 use crate::arm::chain::{KinematicChain, MAX_JOINTS};
-use crate::arm::dynamics::{LinkMotion, LinkState, add_change_of_body, link_states, torques_of};
+use crate::arm::dynamics::{
+    LinkMotion, LinkState, add_change_of_body, add_outside_wrench, link_states, torques_of,
+};
 use crate::arm::kinematics::{link_poses, point_force_torques};
-use glam::DQuat;
+use glam::{DQuat, DVec3};
 use glamx::DPose3;
 use std::sync::Arc;
 
@@ -55,10 +58,14 @@ impl RigidCourse {
                 qdd[j] = motion.acceleration[j][i];
             }
             let out = &mut out[..joints];
+            let outside = motion.outside.as_ref().map(|all| on_last(&chain, &all[i]));
             let mut at = |q: &[f64], out: &mut [f64]| {
                 let motion = [&q[..joints], &qd[..joints], &qdd[..joints]];
                 link_states(&chain, DQuat::IDENTITY, gravity, motion, &mut along);
                 torques_of(&chain, &along[..joints], out);
+                if let Some(outside) = outside {
+                    add_outside_wrench(&chain, &along[..joints], outside, out);
+                }
             };
             at(&q, out);
             if arm.is_soft() {
@@ -109,6 +116,12 @@ impl RigidCourse {
             chain,
         }
     }
+}
+
+/// A force and a moment on the flange, about the origin of the last link's frame and in its axes.
+fn on_last(chain: &KinematicChain, outside: &OutsideWrench) -> (DVec3, DVec3) {
+    let OutsideWrench { force, moment } = outside.seen_from(&chain.tip_from_last);
+    (force, moment)
 }
 
 /// Torques by which pushes load the joints, by joint and sample [N m]; none where there is no push.
@@ -236,8 +249,11 @@ fn wrench_readings(arm: &ArmParameters, motion: &Motion, rigid: &RigidCourse) ->
     let Some(sensor) = &arm.wrench else {
         return vec![[0.0; 6]; motion.len()];
     };
-    let flange = rigid.flange.iter().zip(&motion.time);
+    let flange = rigid.flange.iter().zip(&motion.time).enumerate();
     flange
-        .map(|(flange, time)| sensor.reading(&sensor.truth(flange), time - motion.time[0]))
+        .map(|(i, (flange, time))| {
+            let outside = motion.outside.as_ref().map(|all| &all[i]);
+            sensor.reading(&sensor.truth(flange, outside), time - motion.time[0])
+        })
         .collect()
 }

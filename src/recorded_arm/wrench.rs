@@ -11,6 +11,7 @@
 use glam::{DMat3, DQuat, DVec3};
 use glamx::DPose3;
 
+use super::outside::OutsideWrench;
 use crate::arm::BodyInertia;
 use crate::arm::dynamics::LinkMotion;
 
@@ -64,13 +65,17 @@ impl WrenchSensor {
         }
     }
 
-    /// What the tool does to the sensor as the flange moves, in the sensor's axes.
+    /// What the tool does to the sensor as the flange moves, with what acts on it from outside, in the sensor's axes.
     #[must_use]
-    pub fn truth(&self, flange: &LinkMotion) -> [f64; 6] {
-        let origin = DPose3::from_translation(DVec3::Z * self.height);
+    pub fn truth(&self, flange: &LinkMotion, outside: Option<&OutsideWrench>) -> [f64; 6] {
+        let centre = DVec3::Z * self.height;
+        let origin = DPose3::from_translation(centre);
         let (force, moment) = flange.of_fixed(&origin).wrench_of(&self.tool());
+        let outside = outside.unwrap_or(&OutsideWrench::ZERO);
+        let force = outside.force - force;
+        let moment = outside.moment_about(centre) - moment;
         let turned = DQuat::from_rotation_z(-self.rotation);
-        let (force, moment) = (turned * -force, turned * -moment);
+        let (force, moment) = (turned * force, turned * moment);
         [force.x, force.y, force.z, moment.x, moment.y, moment.z]
     }
 

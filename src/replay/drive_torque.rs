@@ -9,6 +9,7 @@
 //! and along the edge, mu friction of the tool, v speed along the edge. A ball that stands a little off its place meets a sharp edge on another normal, and mu is
 //! known roughly: the shares of a contact force along normal and across it, and of the friction, are given beside. (Swevers et al., IEEE Control Systems 27(5), 2007: inverse dynamics identification.)
 
+use super::contact_load::Touching;
 use super::load::LoadedCell;
 use crate::arm::dynamics::inverse_dynamics;
 use crate::plant::{ArmTrajectory, JointTrajectory};
@@ -37,9 +38,6 @@ struct Load {
     /// Torques of the contact, as in [`Drive`] [N m].
     contact: Vec<[f64; 3]>,
 }
-
-/// Speed along the edge at which friction is felt in full [m/s].
-const SLIDING: f64 = 1e-3;
 
 impl LoadedCell {
     /// The drives of a recording; none for a joint whose torque was not recorded.
@@ -105,19 +103,17 @@ impl LoadedCell {
             &bends,
             &mut torques,
         );
-        let edge = &trajectory.edge[i];
-        let centre = |i: usize| trajectory.ball[i] + trajectory.slide[i] * stroke;
-        let normal = match &trajectory.sharp {
-            Some(sharp) => sharp.touch(centre(i), edge.station).normal,
-            None => edge.bisector,
-        };
-        let speed = (centre(i + 1) - centre(i - 1)).dot(edge.tangent) / span;
+        let Touching {
+            centre,
+            normal,
+            sliding,
+        } = self.touching_at(trajectory, i, stroke);
+        let tangent = trajectory.edge[i].tangent;
         let pressed = force / -normal.dot(trajectory.slide[i]);
-        let drag =
-            self.scenario.nominal.cell.friction * pressed * (speed / SLIDING).clamp(-1.0, 1.0);
-        let across = edge.tangent.cross(normal);
-        let on_tool = [normal * pressed, across * pressed, -edge.tangent * drag];
-        let point = centre(i) - normal * self.scenario.nominal.mounting.tool_radius;
+        let drag = self.scenario.nominal.cell.friction * pressed * sliding;
+        let across = tangent.cross(normal);
+        let on_tool = [normal * pressed, across * pressed, -tangent * drag];
+        let point = centre - normal * self.scenario.nominal.mounting.tool_radius;
         let of = |joint: &JointTrajectory| {
             let lever = joint.axis[i].cross(point - joint.origin[i]);
             on_tool.map(|force| -lever.dot(force))

@@ -103,6 +103,8 @@ pub struct ArmScenario {
     pub drives: Vec<DriveScenario>,
     /// The joint servo.
     pub servo: ServoScenario,
+    /// File of the arm's drives, load and wrench sensor.
+    pub recorded_arm: Option<PathBuf>,
 }
 
 /// The device's file, and how it is used.

@@ -26,7 +26,8 @@ pub fn files_of_cell<'a>(
             ObstacleShape::Mesh { path, .. } => Some(path),
             ObstacleShape::Box(_) => None,
         });
-    for file in others.into_iter().chain(burr).chain(obstacles) {
+    let arm_file = &arm.recorded_arm;
+    for file in others.into_iter().chain(arm_file).chain(burr).chain(obstacles) {
         if !files.contains(&file) {
             files.push(file);
         }

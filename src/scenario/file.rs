@@ -128,6 +128,8 @@ keys! {
         payload: Option<f64> = "payload_kg" in 0.1..=3000.0, shown "that of its maker, where the robot's name in the URDF is known";
         /// joint angles, one for each axis, near which a posture is sought first; when left out, it is found by search
         seed_posture: Option<Vec<f64>> = "seed_posture_deg" in -360..=360;
+        /// file of kind `recorded_arm`: drives, load, wrench sensor and their tolerances, for recordings with the drives' currents or torques and a raw wrench
+        recorded_arm: Option<PathBuf> = "recorded_arm";
         servo: ServoScenario = "servo";
     }
 

@@ -111,6 +111,9 @@ pub(super) fn arm(
         payload: keys.payload,
         seed_posture: keys.seed_posture,
         servo: keys.servo,
+        recorded_arm: (keys.recorded_arm.as_deref())
+            .map(|path| section.file("recorded_arm", path))
+            .transpose()?,
     })
 }
 

@@ -6,7 +6,7 @@ use super::super::error::AppError;
 use super::super::files::{BALANCE, BOARD, COMPARISON, DIAGNOSIS, OutputFolder, REPORT};
 use super::board::board;
 use super::comparison_files::{write_balances, write_recordings};
-use crate::case::{DRIVES, IDENTIFIED, IMPROVED};
+use crate::case::{DRIVES, IDENTIFIED, IMPROVED, IMPROVED_ARM};
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::difference::comparison::Comparison;
 use crate::document::{Style, html, text};
@@ -22,9 +22,10 @@ const PICTURE: &str = "unlisted.svg";
 /// Before and after, of a part of the device.
 const FIT_PICTURE: &str = "fit.svg";
 /// All that a diagnosis may write.
-pub(super) const NAMES: [&str; 12] = [
+pub(super) const NAMES: [&str; 13] = [
     ACCOUNT,
     IMPROVED,
+    IMPROVED_ARM,
     PREDICTION,
     PICTURE,
     FIT_PICTURE,
@@ -51,7 +52,7 @@ pub(super) struct Outputs<'a> {
     pub improved: &'a str,
     /// prediction.csv.
     pub prediction: Option<&'a str>,
-    /// drives.csv, identified.urdf.
+    /// drives.csv, identified.urdf, improved_arm.toml.
     pub beside: &'a [(&'static str, String)],
     /// unlisted.svg.
     pub picture: Option<&'a str>,
@@ -87,6 +88,7 @@ impl Outputs<'_> {
             own.map(|(_, text)| text.as_str())
         };
         let optional = [
+            (IMPROVED_ARM, beside(IMPROVED_ARM)),
             (DRIVES, beside(DRIVES)),
             (IDENTIFIED, beside(IDENTIFIED)),
             (PREDICTION, self.prediction),

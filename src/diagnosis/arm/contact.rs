@@ -32,7 +32,7 @@ fn left_of(input: &ArmInput, recording: usize) -> f64 {
     let own = &input.recordings[recording];
     let forces = |c: &usize| matches!(input.channels[*c], Channel::Wrench(k) if k < 3);
     let channels: Vec<usize> = (0..input.channels.len()).filter(forces).collect();
-    if channels.is_empty() || input.nominal.wrench.is_none() {
+    if channels.is_empty() || input.nominal.wrench.is_none() || own.motion.outside.is_some() {
         return 0.0;
     }
     let flange = RigidCourse::of(&input.nominal, &own.motion).flange;

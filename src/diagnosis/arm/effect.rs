@@ -246,18 +246,21 @@ fn of_drive(input: &ArmInput, joint: usize, all: &mut Vec<Candidate>) {
 fn of_gear(input: &ArmInput, joint: usize, all: &mut Vec<Candidate>) {
     use Quantity as Q;
     let one = |effect, quantity, bounds| Candidate::linear(effect, &[(quantity, bounds)]);
-    if input.channels.contains(&Channel::Link(joint)) {
+    let by_contact = input.shows_joints_by_contact();
+    if input.channels.contains(&Channel::Link(joint)) && !by_contact {
         all.push(one(
             ArmEffect::CompliantJoint(joint),
             Q::Compliance(joint),
             [0.0, 0.1],
         ));
     }
-    all.push(one(
-        ArmEffect::EncoderOffset(joint),
-        Q::EncoderOffset(joint),
-        [-0.5, 0.5],
-    ));
+    if !by_contact {
+        all.push(one(
+            ArmEffect::EncoderOffset(joint),
+            Q::EncoderOffset(joint),
+            [-0.5, 0.5],
+        ));
+    }
     let spring = [
         (Q::SpringStiffness(joint), POSITIVE),
         (Q::Offset(joint), ANY),

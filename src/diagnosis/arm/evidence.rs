@@ -9,8 +9,10 @@ use super::input::ArmInput;
 use crate::recorded_arm::bristles::bristles;
 use crate::recorded_arm::delay::delayed;
 use crate::recorded_arm::law::JointLaw;
+use crate::recorded_arm::motion::{Motion, sample_time};
 use crate::recorded_arm::simulate::{Channel, RigidCourse, moments, readings};
 use crate::recorded_arm::{ArmParameters, Quantity};
+use crate::stats::median;
 
 /// Speed below which a joint stands still, as a share of the largest that its description allows [1].
 const STANDSTILL: f64 = 1e-2;
@@ -18,6 +20,10 @@ const STANDSTILL: f64 = 1e-2;
 const RESTS: f64 = 0.1;
 /// Lengths of bristles after which friction has forgotten how the joint came to rest [1].
 const FORGOTTEN: f64 = 6.0;
+/// Torque that changes faster than the low-pass passes, over the noise of a drive and over its own usual size, from which accelerations are not resolved [1].
+const FAST: [f64; 2] = [4.0, 8.0];
+/// Time about such a change over which the low-pass smears it [s].
+const SMEARED: f64 = 0.03;
 /// Samples at either end of a recording in which derivatives are not to be trusted.
 const ENDS: usize = 6;
 
@@ -67,6 +73,7 @@ impl<'a> Evidence<'a> {
             let moving: Vec<Vec<bool>> = (0..input.nominal.joints())
                 .map(|joint| slides(input, r, joint))
                 .collect();
+            let resolved = resolved(input, &recording.motion);
             let count = recording.motion.len();
             for (c, channel) in input.channels.iter().enumerate() {
                 let readings = match channel {
@@ -76,7 +83,9 @@ impl<'a> Evidence<'a> {
                 for sample in ENDS..count.saturating_sub(ENDS) {
                     let reading = readings[sample];
                     let counts = match channel {
-                        Channel::Drive(joint) => moving[*joint][sample],
+                        Channel::Drive(joint) => {
+                            moving[*joint][sample] && resolved[*joint][sample]
+                        }
                         Channel::Link(_) | Channel::Wrench(_) => true,
                     };
                     if counts && reading.is_finite() {
@@ -311,6 +320,36 @@ fn is_moved(quantity: Quantity, channel: Channel, arm: &ArmParameters) -> bool {
         | Q::RippleCycles(j)
         | Q::SpringStiffness(j) => channel == Channel::Drive(j),
     }
+}
+
+/// Whether accelerations are resolved well enough to say what a drive gives, by joint and sample: not about a jump of a speed, which the low-pass of the
+/// positions smears. `f - f_s` is what of the expected torque changes that fast, against the noise of the drive and against how it usually scatters.
+fn resolved(input: &ArmInput, motion: &Motion) -> Vec<Vec<bool>> {
+    let mut slow = motion.clone();
+    slow.acceleration = motion.slow_acceleration();
+    let [carried, carried_slowly] =
+        [motion, &slow].map(|motion| RigidCourse::of(&input.nominal, motion).carried);
+    let count = motion.len();
+    let held = (SMEARED / sample_time(&motion.time)).round() as usize;
+    let of = |joint: usize| {
+        let channels = input.channels.iter();
+        let channel = { channels }.position(|c| *c == Channel::Drive(joint));
+        let drive = &input.nominal.drives[joint];
+        let noise = channel.map_or(f64::INFINITY, |c| input.noise[c] / drive.inverse_gain);
+        let rotor = |i: usize| {
+            drive.motor_inertia * (motion.acceleration[joint][i] - slow.acceleration[joint][i])
+        };
+        let fast = |i: usize| (carried[joint][i] - carried_slowly[joint][i] + rotor(i)).abs();
+        let fast: Vec<f64> = (0..count).map(fast).collect();
+        let usual = median(fast.iter().copied()).unwrap_or(0.0) / 0.6745;
+        let most = (FAST[0] * noise).max(FAST[1] * usual);
+        let mut resolved = vec![true; count];
+        for i in (0..count).filter(|i| fast[*i] > most) {
+            resolved[i.saturating_sub(held)..(i + held + 1).min(count)].fill(false);
+        }
+        resolved
+    };
+    (0..input.nominal.joints()).map(of).collect()
 }
 
 /// Samples at which a joint slides, so that its friction is known from its motion.

@@ -35,3 +35,13 @@ pub struct ArmInput {
     /// Recordings to diagnose from.
     pub recordings: Vec<ArmRecording>,
 }
+
+impl ArmInput {
+    /// Whether what acts from outside is known: a contact then shows better than drives and wrench do where the joints are, and what encoders and gears do is
+    /// diagnosed from that.
+    #[must_use]
+    pub fn shows_joints_by_contact(&self) -> bool {
+        let mut recordings = self.recordings.iter();
+        recordings.any(|own| own.motion.outside.is_some())
+    }
+}

@@ -8,13 +8,14 @@ use super::super::effects::{WrittenEffect, append, remove_effects};
 use super::RecordedCell;
 use crate::keys::error::ScenarioError;
 
-/// The file with these effects and no others; its paths made absolute, as it goes elsewhere.
+/// The file with these effects and no others; its paths made absolute, as it goes elsewhere. An arm file in place of its own stands beside it.
 ///
 /// # Errors
 /// The file cannot be read any more as it was.
 pub fn improved_cell_text(
     cell: &RecordedCell,
     effects: &[WrittenEffect<'_>],
+    arm_file: Option<&str>,
 ) -> Result<String, ScenarioError> {
     let mut document: DocumentMut =
         cell.text
@@ -28,11 +29,21 @@ pub fn improved_cell_text(
         let full = folder.join(path);
         full.canonicalize().unwrap_or(full).display().to_string()
     };
-    for (table, key) in [("arm", "urdf"), ("device", "model"), ("workpiece", "mesh")] {
-        if let Some(path) = document[table][key].as_str() {
+    let files = [
+        ("arm", "urdf"),
+        ("arm", "recorded_arm"),
+        ("device", "model"),
+        ("workpiece", "mesh"),
+    ];
+    for (table, key) in files {
+        let given = document.get(table).and_then(|table| table.get(key));
+        if let Some(path) = given.and_then(Item::as_str) {
             let path = absolute(path);
             document[table][key] = value(path);
         }
+    }
+    if let Some(name) = arm_file {
+        document["arm"]["recorded_arm"] = value(name);
     }
     if let Some(packages) = document["arm"]
         .get_mut("packages")
