@@ -210,7 +210,11 @@ impl ArmCase {
     }
 }
 
-pub(super) fn misfit(recording: &str, channel: &ComparedChannel, noise: f64) -> Option<ChannelMisfit> {
+pub(super) fn misfit(
+    recording: &str,
+    channel: &ComparedChannel,
+    noise: f64,
+) -> Option<ChannelMisfit> {
     let left = |model: &[f64]| -> Vec<f64> {
         let pairs = channel.measured.iter().zip(model);
         pairs.map(|(measured, model)| measured - model).collect()
@@ -242,7 +246,11 @@ pub(super) fn misfit(recording: &str, channel: &ComparedChannel, noise: f64) -> 
 }
 
 /// What an arm reads in channels along a motion.
-pub(super) fn predicted(arm: &ArmParameters, motion: &Motion, channels: &[Channel]) -> Vec<Vec<f64>> {
+pub(super) fn predicted(
+    arm: &ArmParameters,
+    motion: &Motion,
+    channels: &[Channel],
+) -> Vec<Vec<f64>> {
     let rigid = RigidCourse::of(arm, motion);
     let bristles = all_bristles(arm, motion);
     readings(arm, motion, channels, &bristles, &rigid)
@@ -253,7 +261,10 @@ pub(super) fn only(channels: &[(Channel, String)]) -> Vec<Channel> {
 }
 
 /// Channels that one of the recordings holds and whose noise is known, with their columns.
-pub(super) fn channels(file: &ArmFile, logs: &[ArmLog]) -> Result<Vec<(Channel, String)>, CaseError> {
+pub(super) fn channels(
+    file: &ArmFile,
+    logs: &[ArmLog],
+) -> Result<Vec<(Channel, String)>, CaseError> {
     let mut found: Vec<(Channel, String)> = Vec::new();
     for (channel, column, values) in logs.iter().flat_map(|log| &log.channels) {
         let is_new = found.iter().all(|(own, _)| own != channel);
@@ -291,7 +302,11 @@ fn check_motion(logs: &[ArmLog]) -> Result<(), CaseError> {
 }
 
 /// Refuses currents that are torques: they are as many times larger as a drive gives newton metres an ampere.
-pub(super) fn check_currents(file: &ArmFile, input: &ArmInput, logs: &[ArmLog]) -> Result<(), CaseError> {
+pub(super) fn check_currents(
+    file: &ArmFile,
+    input: &ArmInput,
+    logs: &[ArmLog],
+) -> Result<(), CaseError> {
     let (mut torques, mut seen) = (None, 0);
     for (recording, log) in input.recordings.iter().zip(logs) {
         let nominal = predicted(&input.nominal, &recording.motion, &input.channels);

@@ -21,19 +21,23 @@ use crate::diagnosis::arm::input::{ArmInput, ArmRecording};
 use crate::diagnosis::arm::{ArmDiagnosis, diagnose};
 use crate::diagnosis::difference::comparison::{Compared, ComparedChannel, Comparison};
 use crate::plant::{ArmTrajectory, PlantInputs, PlantParameters, simulate};
-use crate::recorded_arm::ArmParameters;
 use crate::recorded_arm::motion::{Motion, every, sample_time};
-use crate::recorded_arm::outside::OutsideWrench;
+use crate::recorded_arm::outside::{Outside, OutsideWrench};
 use crate::recorded_arm::simulate::Channel;
 use crate::recorded_arm::sliding_mass::SlidingMass;
+use crate::recorded_arm::{ArmParameters, Quantity, Tolerated};
 use crate::replay::{LoadedCell, ToolContact};
 use crate::scenario::arm_file::{ArmFile, from_text, improved_arm_text, load_arm_file};
 
 /// Samples per second that tell all of an arm's drives [Hz]. Where there are more, those between are left out: averaged, friction would turn more slowly than it
 /// does.
-const RATE: f64 = 50.0;
+const RATE: f64 = 150.0;
 /// Time before and after a blow in which an arm swings as no rigid model of it does [s].
 const STRUCK: f64 = 0.05;
+/// How far the point of a contact may lie beside the device's axis and its nominal place [m].
+const BESIDE: f64 = 1e-3;
+/// How far the tool's friction may be off, as a share of it [1].
+const DRAG: f64 = 0.05;
 /// Force from which a tool touches [N].
 const TOUCHES: f64 = 1e-3;
 /// Second difference of the force on the flange from sample to sample that is a blow: of a touch, of a slide at its stop [N].
@@ -75,7 +79,9 @@ impl CellDrives {
         let measured = channels(&file, &logs);
         let Ok(measured) = measured else {
             return Err(CaseError::NoDrives {
-                file: known.first().map_or_else(String::new, |(_, path)| path.display().to_string()),
+                file: known
+                    .first()
+                    .map_or_else(String::new, |(_, path)| path.display().to_string()),
                 arm: path.display().to_string(),
             });
         };
@@ -87,7 +93,13 @@ impl CellDrives {
             channels,
             columns,
         };
-        let at_rest = read.input(read.known.iter().enumerate().map(|(i, log)| log.recording(i, &read.channels)).collect());
+        let at_rest = read.input(
+            read.known
+                .iter()
+                .enumerate()
+                .map(|(i, log)| log.recording(i, &read.channels))
+                .collect(),
+        );
         check_currents(&read.file, &at_rest, &read.known)?;
         Ok(Some(read))
     }
@@ -98,7 +110,13 @@ impl CellDrives {
             nominal: self.file.arm(&[]),
             links: self.file.links.clone(),
             numbers: self.file.numbers.clone(),
-            tolerated: self.file.tolerated.clone(),
+            tolerated: self
+                .file
+                .tolerated
+                .iter()
+                .copied()
+                .chain(of_contact())
+                .collect(),
             noise: noise.filter_map(|c| noise_of(&self.file, *c)).collect(),
             channels: self.channels.clone(),
             columns: self.columns.clone(),
@@ -131,15 +149,6 @@ impl CellDrives {
         let whole: Vec<ArmRecording> = logs.enumerate().map(of).collect();
         let unseen = self.unseen.as_ref().zip(unseen);
         let unseen = unseen.map(|both| of((whole.len(), both)));
-        if let Ok(to) = std::env::var("IDC_DUMP") {
-            for recording in &whole {
-                let mut text = String::new();
-                for (i, o) in recording.motion.outside.iter().flatten().enumerate() {
-                    text += &format!("{},{},{},{},{},{},{},{}\n", recording.motion.time[i], o.force.x, o.force.y, o.force.z, o.moment.x, o.moment.y, o.moment.z, u8::from(recording.readings[0][i].is_finite()));
-                }
-                let _ = std::fs::write(format!("{to}/{}.outside", recording.name), text);
-            }
-        }
         let mut input = self.input(whole.iter().map(thinned).collect());
         input.nominal = nominal;
         let found = diagnose(&input, &mut |_| {});
@@ -165,7 +174,10 @@ impl CellDrives {
         let improved = improved_arm_text(&self.file, &fitted, &names);
         let read = from_text(Path::new(IMPROVED_ARM), &improved);
         let read = diagnosed.answer.kept(IMPROVED_ARM, read);
-        let model = read.map_or(fitted, |file| file.arm(&names));
+        let outside_error = fitted.outside_error;
+        let mut model = read.map_or(fitted, |file| file.arm(&names));
+        // Of this contact, not of the arm.
+        model.outside_error = outside_error;
         let models = [&input.nominal, &tolerated, &model];
         for recording in input.recordings.iter().chain(unseen) {
             let all = models.map(|arm| predicted(arm, &recording.motion, &input.channels));
@@ -186,6 +198,16 @@ impl CellDrives {
         diagnosed.beside.push((IMPROVED_ARM, improved));
         Ok(())
     }
+}
+
+/// What is known of a contact within bounds.
+fn of_contact() -> impl Iterator<Item = Tolerated> {
+    let within = |quantity, most: f64| Tolerated {
+        quantity,
+        bounds: [-most, most],
+    };
+    let points = (0..3).map(move |axis| within(Quantity::OutsidePoint(axis), BESIDE));
+    points.chain([within(Quantity::OutsideDrag, DRAG)])
 }
 
 /// What a cell does to the flange of its arm.
@@ -215,7 +237,7 @@ impl Flange<'_> {
         // Both are of one file; lines that one of them leaves out repeat others.
         let place = |t: &f64| inputs.time.partition_point(|own| own < t).min(last);
         let places: Vec<usize> = motion.time.iter().map(place).collect();
-        let outside = places.iter().enumerate().map(|(i, place)| {
+        let both = places.iter().enumerate().map(|(i, place)| {
             let slide = [
                 truth.stroke[*place],
                 truth.speed[*place],
@@ -223,7 +245,7 @@ impl Flange<'_> {
             ];
             self.at(motion, i, slide, &contacts[*place])
         });
-        let outside = outside.collect();
+        let (wrench, drag) = both.unzip();
         for readings in &mut recording.readings {
             for (reading, place) in readings.iter_mut().zip(&places) {
                 if !known[*place] {
@@ -231,29 +253,41 @@ impl Flange<'_> {
                 }
             }
         }
-        recording.motion.outside = Some(outside);
+        recording.motion.outside = Some(Outside { wrench, drag });
     }
 
-    /// What acts on the flange at a sample: stroke [m], its rate and acceleration, and the contact.
-    fn at(&self, motion: &Motion, i: usize, slide: [f64; 3], contact: &ToolContact) -> OutsideWrench {
+    /// What acts on the flange at a sample, and what of it friction of the tool is: stroke [m], its rate and acceleration, and the contact.
+    fn at(
+        &self,
+        motion: &Motion,
+        i: usize,
+        slide: [f64; 3],
+        contact: &ToolContact,
+    ) -> (OutsideWrench, OutsideWrench) {
         let of = |all: &[Vec<f64>]| all.iter().map(|own| own[i]).collect::<Vec<f64>>();
-        let [q, qd, qdd] = [&motion.position, &motion.speed, &motion.acceleration].map(|all| of(all));
+        let [q, qd, qdd] =
+            [&motion.position, &motion.speed, &motion.acceleration].map(|all| of(all));
         let base = self.cell.scenario.arm.world_from_base;
-        let [slides, own] = [&self.cell.chain, &self.nominal.chain].map(|chain| tip_pose(chain, base, &q));
+        let [slides, own] =
+            [&self.cell.chain, &self.nominal.chain].map(|chain| tip_pose(chain, base, &q));
         let mounting = &self.cell.scenario.nominal.mounting;
         let centre = slides.transform_point(DVec3::Z * (mounting.tool_centre + slide[0]));
         let point = own.inverse().transform_point(centre + contact.from_centre);
-        let pressed = OutsideWrench::at(point, own.rotation.inverse() * contact.force);
+        let [pressed, drag] = [contact.force, contact.drag]
+            .map(|force| OutsideWrench::at(point, own.rotation.inverse() * force));
         let mut links = [LinkState::AT_REST; MAX_JOINTS];
         let chain = &self.nominal.chain;
         let gravity = self.nominal.true_gravity();
         link_states(chain, DQuat::IDENTITY, gravity, [&q, &qd, &qdd], &mut links);
-        let last = links[q.len() - 1].motion().of_fixed(&self.cell.chain.tip_from_last);
+        let last = links[q.len() - 1]
+            .motion()
+            .of_fixed(&self.cell.chain.tip_from_last);
         let mass = SlidingMass {
             mass: self.plant.device.moving_mass,
             centre: mounting.moving_centre_of_mass,
         };
-        pressed + mass.beyond_retracted(&last, slide).seen_from(&(own.inverse() * slides))
+        let sliding = mass.beyond_retracted(&last, slide);
+        (pressed + sliding.seen_from(&(own.inverse() * slides)), drag)
     }
 }
 
@@ -342,7 +376,10 @@ fn add_misfits(answer: &mut Answer, comparison: &Comparison, input: &ArmInput) {
             shown: Vec::new(),
         });
         for run in comparison.recordings.iter().filter(|run| !run.unseen) {
-            let own = run.channels.iter().find(|channel| channel.column == *column);
+            let own = run
+                .channels
+                .iter()
+                .find(|channel| channel.column == *column);
             let misfit = own.and_then(|own| misfit(&run.name, own, *noise));
             answer.details.misfit.extend(misfit);
         }

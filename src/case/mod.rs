@@ -58,9 +58,7 @@ use crate::diagnosis::search::progress::Observer;
 use crate::diagnosis::settings::Settings;
 use crate::effects::own_effect;
 use crate::flange::FittedFlange;
-use crate::plant::{
-    Channel, DeviceParts, LawText, OwnLaw, PlantInputs, PlantParameters, simulate,
-};
+use crate::plant::{Channel, DeviceParts, LawText, OwnLaw, PlantInputs, PlantParameters, simulate};
 use crate::recording::csv::columns_text;
 use crate::recording::provenance::Provenance;
 use crate::replay::LoadedCell;

@@ -9,7 +9,7 @@
 //! (1988), 699.
 
 use super::filter::low_pass;
-use super::outside::OutsideWrench;
+use super::outside::Outside;
 use super::spline::Spline;
 use crate::stats::median;
 use std::f64::consts::TAU;
@@ -30,7 +30,7 @@ pub struct Motion {
     /// Accelerations by joint and sample [rad/s2 or m/s2].
     pub acceleration: Vec<Vec<f64>>,
     /// What acts on the flange beside the bodies of the description, by sample; none where nothing does, or nobody knows.
-    pub outside: Option<Vec<OutsideWrench>>,
+    pub outside: Option<Outside>,
 }
 
 /// Median time between samples [s].
@@ -223,7 +223,10 @@ impl Motion {
             position: of(&self.position),
             speed: of(&self.speed),
             acceleration: of(&self.acceleration),
-            outside: self.outside.as_ref().map(|all| every(all, apart)),
+            outside: self.outside.as_ref().map(|all| Outside {
+                wrench: every(&all.wrench, apart),
+                drag: every(&all.drag, apart),
+            }),
         }
     }
 

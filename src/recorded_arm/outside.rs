@@ -1,10 +1,11 @@
 //! Force and moment from outside on the flange, known of a recording: a tool's contact, a mass that slides.
 //!
 //! ```text
-//! tau = inverse dynamics - J^T (f, n)            w = w_tool + (f, n - h e_z x f)
+//! tau = inverse dynamics - J^T (f, n + d x f)            w = w_tool + (f, n + (d - h e_z) x f),      f = f_0 + k f_drag
 //! ```
 //!
-//! f force, n moment about the flange's origin, both in its axes; w what the tool does to a wrench sensor at the height h. Source: Featherstone, Rigid Body
+//! f force, n moment about the flange's origin, both in its axes; w what the tool does to a wrench sensor at the height h; f_drag the part of f that friction
+//! of the tool is, k and d how far that and the point of the contact are off. Source: Featherstone, Rigid Body
 //! Dynamics Algorithms, 2008, sec. 5.3 (external forces).
 
 use glam::DVec3;
@@ -50,6 +51,39 @@ impl OutsideWrench {
     #[must_use]
     pub fn moment_about(&self, point: DVec3) -> DVec3 {
         self.moment - point.cross(self.force)
+    }
+}
+
+/// What acts from outside over a recording, by sample.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Outside {
+    /// All of it.
+    pub wrench: Vec<OutsideWrench>,
+    /// The part of it that is friction of the tool.
+    pub drag: Vec<OutsideWrench>,
+}
+
+/// How far what acts from outside is off what is known of it.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct OutsideError {
+    /// Point at which it acts, in the flange's axes [m].
+    pub point: DVec3,
+    /// Friction of the tool, as a share of it [1].
+    pub drag: f64,
+}
+
+impl Outside {
+    /// What acts at a sample.
+    #[must_use]
+    pub fn at(&self, sample: usize, error: &OutsideError) -> OutsideWrench {
+        let drag = &self.drag[sample];
+        let more = OutsideWrench {
+            force: error.drag * drag.force,
+            moment: error.drag * drag.moment,
+        };
+        let mut all = self.wrench[sample] + more;
+        all.moment += error.point.cross(all.force);
+        all
     }
 }
 

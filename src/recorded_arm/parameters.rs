@@ -4,6 +4,7 @@ use glam::{DMat3, DQuat, DVec3};
 use glamx::DPose3;
 
 use super::law::JointLaw;
+use super::outside::OutsideError;
 use super::push::Push;
 use super::wrench::WrenchSensor;
 use crate::arm::chain::{BodyInertia, KinematicChain, point_mass_inertia};
@@ -127,6 +128,8 @@ pub struct ArmParameters {
     pub pushes: Vec<Push>,
     /// Laws that act at joints and have no name.
     pub laws: Vec<JointLaw>,
+    /// How far what acts from outside is off what recordings state of it.
+    pub outside_error: OutsideError,
 }
 
 impl ArmParameters {
@@ -189,6 +192,7 @@ impl ArmParameters {
         let drives = self.drives.iter().zip(&other.drives);
         self.gravity == other.gravity
             && self.tilt == other.tilt
+            && self.outside_error == other.outside_error
             && drives
                 .into_iter()
                 .all(|(a, b)| a.encoder_offset == b.encoder_offset)

@@ -69,6 +69,10 @@ pub enum Quantity {
     ToolMass,
     /// A coordinate of the tool's centre [m].
     ToolCentre(usize),
+    /// A coordinate of how far what acts from outside acts beside where it is stated to [m].
+    OutsidePoint(usize),
+    /// How far friction of the tool is off what is stated, as a share of it [1].
+    OutsideDrag,
     /// How late currents are stamped [s].
     Delay,
     /// Component of the largest force of a push [N].
@@ -146,6 +150,8 @@ impl Quantity {
             Self::SensorRotation => wrench.map(|w| &mut w.rotation),
             Self::ToolMass => wrench.map(|w| &mut w.tool_mass),
             Self::ToolCentre(axis) => wrench.map(|w| &mut w.tool_centre[axis]),
+            Self::OutsidePoint(axis) => Some(&mut arm.outside_error.point[axis]),
+            Self::OutsideDrag => Some(&mut arm.outside_error.drag),
             Self::Delay => Some(&mut arm.delay),
             Self::LawAmplitude(law, which) => {
                 arm.laws.get_mut(law).map(|l| &mut l.amplitude[which])
@@ -240,6 +246,7 @@ impl Quantity {
             | Self::ToolCentre(_)
             | Self::PayloadMoment(_)
             | Self::LoadMoment(_)
+            | Self::OutsidePoint(_)
             | Self::LinkInertia(..) => 1e-3,
             Self::InverseGain(_)
             | Self::WrenchGain(_)

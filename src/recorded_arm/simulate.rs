@@ -58,7 +58,8 @@ impl RigidCourse {
                 qdd[j] = motion.acceleration[j][i];
             }
             let out = &mut out[..joints];
-            let outside = motion.outside.as_ref().map(|all| on_last(&chain, &all[i]));
+            let outside = motion.outside.as_ref();
+            let outside = outside.map(|all| on_last(&chain, &all.at(i, &arm.outside_error)));
             let mut at = |q: &[f64], out: &mut [f64]| {
                 let motion = [&q[..joints], &qd[..joints], &qdd[..joints]];
                 link_states(&chain, DQuat::IDENTITY, gravity, motion, &mut along);
@@ -252,8 +253,12 @@ fn wrench_readings(arm: &ArmParameters, motion: &Motion, rigid: &RigidCourse) ->
     let flange = rigid.flange.iter().zip(&motion.time).enumerate();
     flange
         .map(|(i, (flange, time))| {
-            let outside = motion.outside.as_ref().map(|all| &all[i]);
-            sensor.reading(&sensor.truth(flange, outside), time - motion.time[0])
+            let outside = motion.outside.as_ref();
+            let outside = outside.map(|all| all.at(i, &arm.outside_error));
+            sensor.reading(
+                &sensor.truth(flange, outside.as_ref()),
+                time - motion.time[0],
+            )
         })
         .collect()
 }

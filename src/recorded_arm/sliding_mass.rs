@@ -23,7 +23,11 @@ pub struct SlidingMass {
 impl SlidingMass {
     /// What it does at a stroke [m], its rate [m/s] and acceleration [m/s2], beyond what it does at rest at stroke zero.
     #[must_use]
-    pub fn beyond_retracted(&self, flange: &LinkMotion, [stroke, rate, acceleration]: [f64; 3]) -> OutsideWrench {
+    pub fn beyond_retracted(
+        &self,
+        flange: &LinkMotion,
+        [stroke, rate, acceleration]: [f64; 3],
+    ) -> OutsideWrench {
         let (spin, spin_rate) = (flange.spin, flange.spin_rate);
         let of = |centre: DVec3| {
             flange.acceleration + spin_rate.cross(centre) + spin.cross(spin.cross(centre))
@@ -31,10 +35,7 @@ impl SlidingMass {
         let retracted = DVec3::Z * self.centre;
         let out = DVec3::Z * (self.centre + stroke);
         let slides = 2.0 * spin.cross(DVec3::Z * rate) + DVec3::Z * acceleration;
-        let (with, without) = (
-            -self.mass * (of(out) + slides),
-            -self.mass * of(retracted),
-        );
+        let (with, without) = (-self.mass * (of(out) + slides), -self.mass * of(retracted));
         OutsideWrench {
             force: with - without,
             moment: out.cross(with) - retracted.cross(without),
@@ -50,7 +51,10 @@ mod tests {
     #[test]
     fn force_is_that_of_the_motion_in_the_world() {
         let (rate, gravity) = (0.7, DVec3::new(0.0, 0.0, -9.81));
-        let slide = SlidingMass { mass: 3.0, centre: 0.1 };
+        let slide = SlidingMass {
+            mass: 3.0,
+            centre: 0.1,
+        };
         let stroke = |t: f64| 0.02 + 0.3 * t + 0.5 * t * t;
         let turned = |t: f64| glam::DQuat::from_rotation_x(rate * t);
         let centre = |t: f64, stroke: f64| turned(t) * (DVec3::Z * (slide.centre + stroke));

@@ -17,6 +17,8 @@ pub struct ToolContact {
     pub from_centre: DVec3,
     /// Force on the tool, in the world's axes [N].
     pub force: DVec3,
+    /// What of it is friction along the edge [N].
+    pub drag: DVec3,
 }
 
 /// Contact at a sample.
@@ -35,7 +37,12 @@ const SLIDING: f64 = 1e-3;
 
 impl LoadedCell {
     /// Where the ball of a trajectory touches at a sample that is neither the first nor the last, at a stroke [m].
-    pub(super) fn touching_at(&self, trajectory: &ArmTrajectory, i: usize, stroke: f64) -> Touching {
+    pub(super) fn touching_at(
+        &self,
+        trajectory: &ArmTrajectory,
+        i: usize,
+        stroke: f64,
+    ) -> Touching {
         let span = trajectory.time[i + 1] - trajectory.time[i - 1];
         let edge = &trajectory.edge[i];
         let centre = |i: usize| trajectory.ball[i] + trajectory.slide[i] * stroke;
@@ -64,10 +71,11 @@ impl LoadedCell {
             // At the ends as beside them.
             let i = i.clamp(1, count.saturating_sub(2).max(1));
             let touching = self.touching_at(trajectory, i, stroke[i]);
-            let drag = trajectory.edge[i].tangent * (friction * touching.sliding);
+            let drag = -trajectory.edge[i].tangent * (friction * touching.sliding * force[i]);
             ToolContact {
                 from_centre: -touching.normal * self.scenario.nominal.mounting.tool_radius,
-                force: (touching.normal - drag) * force[i],
+                force: touching.normal * force[i] + drag,
+                drag,
             }
         };
         (0..count).map(at).collect()

@@ -27,7 +27,12 @@ pub fn files_of_cell<'a>(
             ObstacleShape::Box(_) => None,
         });
     let arm_file = &arm.recorded_arm;
-    for file in others.into_iter().chain(arm_file).chain(burr).chain(obstacles) {
+    for file in others
+        .into_iter()
+        .chain(arm_file)
+        .chain(burr)
+        .chain(obstacles)
+    {
         if !files.contains(&file) {
             files.push(file);
         }

@@ -83,9 +83,7 @@ impl<'a> Evidence<'a> {
                 for sample in ENDS..count.saturating_sub(ENDS) {
                     let reading = readings[sample];
                     let counts = match channel {
-                        Channel::Drive(joint) => {
-                            moving[*joint][sample] && resolved[*joint][sample]
-                        }
+                        Channel::Drive(joint) => moving[*joint][sample] && resolved[*joint][sample],
                         Channel::Link(_) | Channel::Wrench(_) => true,
                     };
                     if counts && reading.is_finite() {
@@ -289,7 +287,12 @@ fn is_moved(quantity: Quantity, channel: Channel, arm: &ArmParameters) -> bool {
         | Q::LoadMass
         | Q::LoadMoment(_) => !matches!(channel, Channel::Wrench(_)),
         Q::PayloadMass | Q::PayloadMoment(_) => !matches!(channel, Channel::Wrench(_)),
-        Q::Tilt(_) | Q::EncoderOffset(_) | Q::ToolMass | Q::ToolCentre(_) => true,
+        Q::Tilt(_)
+        | Q::EncoderOffset(_)
+        | Q::ToolMass
+        | Q::ToolCentre(_)
+        | Q::OutsidePoint(_)
+        | Q::OutsideDrag => true,
         Q::Compliance(_) => !matches!(channel, Channel::Wrench(_)),
         Q::Delay | Q::PushForce(..) | Q::PushStart(_) | Q::PushEnd(_) | Q::PushEdge(_) => {
             matches!(channel, Channel::Drive(_))

@@ -236,6 +236,7 @@ pub fn curvature(evidence: &Evidence, course: &Course, parameters: &[Parameter])
 pub(super) mod tests {
     use super::*;
     use crate::arm::test_chains::planar_two_link;
+    use crate::recorded_arm::outside::OutsideError;
     use crate::recorded_arm::simulate::Channel;
     use crate::recorded_arm::{Drive, PointMass};
     use glam::DVec3;
@@ -271,6 +272,7 @@ pub(super) mod tests {
                 delay: 0.0,
                 pushes: Vec::new(),
                 laws: Vec::new(),
+                outside_error: OutsideError::default(),
             },
             links: vec!["upper".to_owned(), "lower".to_owned()],
             numbers: vec![1, 2],

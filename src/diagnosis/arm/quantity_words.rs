@@ -44,6 +44,8 @@ pub fn named(input: &ArmInput, quantity: Quantity) -> Named {
         Q::Tilt(_) => of("base", "pitch".to_owned(), "rad"),
         Q::ToolMass => of("tool", "mass".to_owned(), "kg"),
         Q::ToolCentre(axis) => of("tool", along("centre", axis), "m"),
+        Q::OutsidePoint(axis) => of("contact", along("point", axis), "m"),
+        Q::OutsideDrag => of("contact", "friction, as a share".to_owned(), ""),
         Q::SensorRotation => of("wrench sensor", "angle about z".to_owned(), "rad"),
         Q::WrenchGain(k) => of("wrench sensor", format!("gain of {}", words(k)), ""),
         Q::Zero(k) => of(

@@ -14,6 +14,7 @@ use crate::arm::test_chains::random_chain;
 use crate::diagnosis::answer::doubt::Doubt;
 use crate::diagnosis::answer::{Answer, Verdict};
 use crate::recorded_arm::motion::Motion;
+use crate::recorded_arm::outside::OutsideError;
 use crate::recorded_arm::simulate::{Channel, RigidCourse, all_bristles, readings};
 use crate::recorded_arm::{ArmParameters, Drive, PointMass, Quantity, Tolerated};
 use glam::DVec3;
@@ -50,6 +51,7 @@ fn nominal() -> ArmParameters {
         delay: 0.0,
         pushes: Vec::new(),
         laws: Vec::new(),
+        outside_error: OutsideError::default(),
     }
 }
 

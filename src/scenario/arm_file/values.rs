@@ -12,6 +12,7 @@ use crate::arm::{ArmOptions, load_arm};
 use crate::keys::check::{Section, plain};
 use crate::keys::document::Document;
 use crate::keys::error::ScenarioError;
+use crate::recorded_arm::outside::OutsideError;
 use crate::recorded_arm::parameters::{USUAL_BRISTLE_LENGTH, set_mass};
 use crate::recorded_arm::wrench::WrenchSensor;
 use crate::recorded_arm::{ArmParameters, Drive, PointMass, Quantity, Tolerated};
@@ -100,6 +101,7 @@ pub(super) fn chain(
         delay: 0.0,
         pushes: Vec::new(),
         laws: Vec::new(),
+        outside_error: OutsideError::default(),
     };
     Ok((nominal, arm.link_names[1..].to_vec(), numbers))
 }
