@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::seen::{Because, Cells, Line, Looked, SaidUnit, Seen, TimeSeen};
 use super::time::toml_text;
-use super::{names, text, units};
+use super::{lerobot, names, text, units};
 use crate::import::encoding::DetectedEncoding;
 use crate::import::error::ImportError;
 use crate::import::map::{Column, Pressure};
@@ -23,6 +23,7 @@ fn form(name: &str, why: &str) -> Vec<Line> {
 /// Looks at a Parquet table; columns that hold neither numbers nor stamps are left out.
 pub(super) fn parquet(path: &Path) -> Result<Looked, ImportError> {
     let names = Table::open(path)?.names();
+    let robot = lerobot::feature_names(path);
     let mut columns = Vec::new();
     for (place, name) in names.iter().enumerate() {
         // A column that cannot be read is none to choose.
@@ -35,7 +36,7 @@ pub(super) fn parquet(path: &Path) -> Result<Looked, ImportError> {
         let whole = name.split('[').next().unwrap_or(name);
         columns.push(Seen {
             column: Column::Name(name.clone()),
-            name: name.clone(),
+            name: robot.get(name).unwrap_or(name).clone(),
             joint: None,
             frames: Vec::new(),
             // An element of a list has the list's.
