@@ -177,6 +177,15 @@ pub(super) fn read(arm: &ArmFile, folder: &Path, name: &str) -> Result<ArmLog, C
         let drive = &arm.nominal.drives[joint];
         match signal {
             Signal::Command | Signal::Speed => {}
+            Signal::Position if positions[joint].is_some() => {
+                let found = format!("a second position of joint {number}");
+                return Err(column_error(
+                    &path,
+                    &column,
+                    found,
+                    "one of each".to_owned(),
+                ));
+            }
             Signal::Position => positions[joint] = Some(values),
             Signal::Link => channels.push((Channel::Link(joint), usual, values)),
             Signal::Current if drive.logs_current => {
@@ -198,6 +207,25 @@ pub(super) fn read(arm: &ArmFile, folder: &Path, name: &str) -> Result<ArmLog, C
         }
     }
     check_torques(arm, &path, &log, &channels)?;
+    let found = all_positions(arm, &path, positions, &log)?;
+    channels.sort_by_key(|(channel, ..)| *channel);
+    Ok(ArmLog {
+        path,
+        name: name.to_owned(),
+        log,
+        positions: found,
+        channels,
+    })
+}
+
+/// Positions of all joints, base first; refused where one is missing or no position of it.
+fn all_positions(
+    arm: &ArmFile,
+    path: &Path,
+    positions: Vec<Option<Vec<f64>>>,
+    log: &Log,
+) -> Result<Vec<Vec<f64>>, CaseError> {
+    let count = positions.len();
     let mut found = Vec::with_capacity(count);
     for (joint, values) in positions.into_iter().enumerate() {
         let unit = match arm.nominal.chain.joints[joint].kind {
@@ -215,19 +243,12 @@ pub(super) fn read(arm: &ArmFile, folder: &Path, name: &str) -> Result<ArmLog, C
                 ),
                 None => "missing".to_owned(),
             };
-            return Err(column_error(&path, &column, found, expected));
+            return Err(column_error(path, &column, found, expected));
         };
-        check_positions(arm, (&path, &column), joint, &values, &log.lines)?;
+        check_positions(arm, (path, &column), joint, &values, &log.lines)?;
         found.push(values);
     }
-    channels.sort_by_key(|(channel, ..)| *channel);
-    Ok(ArmLog {
-        path,
-        name: name.to_owned(),
-        log,
-        positions: found,
-        channels,
-    })
+    Ok(found)
 }
 
 /// The first column that is an angle of something that is no joint.

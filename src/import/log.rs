@@ -159,6 +159,11 @@ fn fall(time: &[f64], rows: &[usize]) -> bool {
 /// Ratio from which a time may have fallen by a thousand, less some steps.
 const THOUSANDFOLD: std::ops::RangeInclusive<f64> = 900.0..=1001.0;
 
+/// Whether a clock starts again where a time is behind the one before it, and did not only come late: that goes back by little.
+pub(super) fn starts_again([first, before, found]: [f64; 3]) -> bool {
+    found - first < 0.5 * (before - first)
+}
+
 /// The refusal of a time that goes back behind the one before it; `dropped` are the rows that leave out all from there on, or all before.
 fn back(
     path: &Path,
@@ -169,9 +174,7 @@ fn back(
 ) -> ImportError {
     let file = path.to_owned();
     let advice = fallen(found, before);
-    // A row that is late goes back by little.
-    let starts_again = found - first < 0.5 * (before - first);
-    if advice.is_empty() && starts_again && map.form != Form::Bag {
+    if advice.is_empty() && starts_again([first, before, found]) && map.form != Form::Bag {
         return ImportError::Restart {
             file,
             line,

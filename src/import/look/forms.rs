@@ -41,7 +41,7 @@ pub(super) fn parquet(path: &Path) -> Result<Looked, ImportError> {
             frames: Vec::new(),
             // An element of a list has the list's.
             unit: units::of_name(if name.ends_with(']') { whole } else { name })
-                .or_else(|| units::of_name(name)),
+                .or_else(|| units::of_name(name).filter(|_| !is_element(name))),
             cells,
         });
     }
@@ -61,6 +61,14 @@ pub(super) fn parquet(path: &Path) -> Result<Looked, ImportError> {
         columns,
         ..Looked::default()
     })
+}
+
+/// Whether a column is an element of a list: `[1]` behind its name is no unit.
+fn is_element(name: &str) -> bool {
+    let inside = name
+        .strip_suffix(']')
+        .and_then(|name| name.rsplit_once('['));
+    inside.is_some_and(|(_, index)| index.chars().all(|c| c.is_ascii_digit()))
 }
 
 /// Cells of a table that knows their types.

@@ -222,7 +222,7 @@ mod tests {
             &[1.0, 2.0],
         );
         assert_eq!(plain[0], "bend position [deg] bend_encoder deg");
-        assert_eq!(plain[3], "hip current [mA] hip_current mA");
+        assert_eq!(plain[4], "hip current [mA] hip_current mA");
         // Names that say the place from the base.
         let numbered = found(
             &[

@@ -6,7 +6,6 @@
 use std::collections::BTreeMap;
 
 use super::assign::Pick;
-use super::names;
 use super::seen::{Because, SaidUnit, Seen};
 use crate::import::units;
 use crate::recording::Unit;
@@ -25,6 +24,15 @@ const NAMES: [(&str, Option<&str>); 9] = [
 const FORCES: [&str; 2] = ["force", "f"];
 const MOMENTS: [&str; 4] = ["torque", "moment", "t", "m"];
 const AXES: [&str; 3] = ["x", "y", "z"];
+/// Words of what is commanded.
+const SET: [&str; 6] = [
+    "target",
+    "command",
+    "commanded",
+    "cmd",
+    "desired",
+    "setpoint",
+];
 /// The readings in a map, forces first.
 const QUANTITIES: [&str; 6] = [
     "wrench_force_x",
@@ -128,9 +136,8 @@ fn axis(name: &str) -> Option<(String, usize)> {
         _ => return None,
     };
     // Messages of a set point are no readings.
-    let prefix = words.join("_");
-    let said = names::said(&prefix);
-    (!said.has(names::Role::Set)).then_some((prefix, of + axis))
+    let is_set = words.iter().any(|word| SET.contains(&word.as_str()));
+    (!is_set).then(|| (words.join("_"), of + axis))
 }
 
 /// Whether the last word is a unit behind an axis: `force_x_n`, `torque_x_n_m`.
