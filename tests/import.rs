@@ -2,7 +2,7 @@
 
 mod bags;
 mod dialects;
-mod files;
+pub mod files;
 mod forms;
 mod kinds;
 mod real;

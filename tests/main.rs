@@ -2,6 +2,7 @@
 
 mod advice;
 mod air;
+mod arm_logs;
 mod bad_input;
 mod balance;
 mod bench_reference;

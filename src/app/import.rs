@@ -16,7 +16,7 @@ use super::output::say;
 use super::progress;
 use crate::document::{self, Style};
 use crate::import::findings::same_data;
-use crate::import::{ImportMap, Imported, LogNote, import, load_map};
+use crate::import::{ImportError, ImportMap, Imported, LogNote, import, load_map};
 use crate::recording::csv::write_recording;
 use crate::recording::gaps::parts;
 use crate::recording::parquet::write_parquet;
@@ -32,7 +32,7 @@ pub(super) struct ImportArguments {
     /// Recording to write, .parquet or .csv; or a folder, where each is named by its first log. Nothing is written without it.
     #[arg(long, help_heading = "Output")]
     out: Option<PathBuf>,
-    /// Write what stands between gaps as recordings of their own, numbered from 1; `idc diagnose` takes no recording with a gap.
+    /// Write what stands between gaps, or where a clock starts again, as recordings of their own, numbered from 1; `idc diagnose` takes no recording with a gap.
     #[arg(long, help_heading = "Output", requires = "out")]
     split: bool,
     /// Put new results in place of old ones.
@@ -71,19 +71,12 @@ pub(super) fn run(arguments: &ImportArguments) -> Result<ExitCode, AppError> {
     let sizes: Vec<u64> = groups.iter().map(|logs| bytes(logs)).collect();
     let bar = progress::bytes(sizes.iter().sum(), arguments.quiet || arguments.json);
     for (logs, size) in groups.iter().zip(&sizes) {
-        let imported = import(&map, logs)?;
-        bar.inc(*size);
-        let out = arguments.out.as_ref();
-        let out = out.map(|out| destination(out, &imported, groups.len()));
-        let whole = 0..imported.recording.sample_count();
-        let parts = match arguments.split {
-            true => parts(imported.recording.time()),
-            false => vec![whole],
+        let recordings = match arguments.split {
+            true => parted(&map, logs)?,
+            false => vec![import(&map, logs)?],
         };
-        jobs.push(Job {
-            outs: out.map_or(Vec::new(), |out| numbered(&out, parts)),
-            imported,
-        });
+        bar.inc(*size);
+        jobs.extend(self::jobs(arguments, recordings, groups.len()));
     }
     bar.finish_and_clear();
     drop(reading);
@@ -115,6 +108,51 @@ pub(super) fn run(arguments: &ImportArguments) -> Result<ExitCode, AppError> {
     Ok(ExitCode::Done)
 }
 
+/// Recordings of logs, one for each time that their clock starts.
+fn parted(map: &ImportMap, logs: &[PathBuf]) -> Result<Vec<Imported>, ImportError> {
+    match import(map, logs) {
+        Err(ImportError::Restart {
+            dropped: [before, after],
+            ..
+        }) if map.files.len() == 1 => {
+            let (mut first, mut rest) = (map.clone(), map.clone());
+            first.files[0].dropped[1] = after;
+            rest.files[0].dropped[0] = before;
+            let mut all = parted(&first, logs)?;
+            all.extend(parted(&rest, logs)?);
+            Ok(all)
+        }
+        imported => Ok(vec![imported?]),
+    }
+}
+
+/// Recordings of the same logs, and where they go.
+fn jobs(arguments: &ImportArguments, recordings: Vec<Imported>, groups: usize) -> Vec<Job> {
+    let of = |imported: &Imported| {
+        let whole = 0..imported.recording.sample_count();
+        match arguments.split {
+            true => parts(imported.recording.time()),
+            false => vec![whole],
+        }
+    };
+    let samples: Vec<Vec<Range<usize>>> = recordings.iter().map(of).collect();
+    let out = arguments.out.as_ref();
+    let out = out.map(|out| destination(out, &recordings[0], groups));
+    let count = samples.iter().map(Vec::len).sum();
+    let paths = out.map_or(Vec::new(), |out| numbered(&out, count));
+    let mut paths = paths.into_iter();
+    let pairs = recordings.into_iter().zip(samples);
+    let job = |(imported, samples): (Imported, Vec<Range<usize>>)| Job {
+        // No path is left where nothing is written.
+        outs: samples
+            .into_iter()
+            .filter_map(|s| Some((paths.next()?, s)))
+            .collect(),
+        imported,
+    };
+    pairs.map(job).collect()
+}
+
 /// Whether a recording is written as comma-separated values, by the ending of its name.
 fn is_csv(path: &Path) -> bool {
     let ending = path.extension().unwrap_or_default();
@@ -140,21 +178,14 @@ fn is_folder_name(out: &Path) -> bool {
 }
 
 /// Where the parts of a recording go: one alone as it is called, several numbered from 1.
-fn numbered(out: &Path, parts: Vec<Range<usize>>) -> Vec<(PathBuf, Range<usize>)> {
-    if parts.len() == 1 {
-        return parts
-            .into_iter()
-            .map(|part| (out.to_owned(), part))
-            .collect();
+fn numbered(out: &Path, count: usize) -> Vec<PathBuf> {
+    if count == 1 {
+        return vec![out.to_owned()];
     }
     let stem = out.file_stem().unwrap_or_default().to_string_lossy();
     let ending = out.extension().unwrap_or_default().to_string_lossy();
     let name = |index: usize| out.with_file_name(format!("{stem}-{}.{ending}", index + 1));
-    parts
-        .into_iter()
-        .enumerate()
-        .map(|(index, part)| (name(index), part))
-        .collect()
+    (0..count).map(name).collect()
 }
 
 /// Size of logs together [bytes].

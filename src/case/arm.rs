@@ -13,6 +13,7 @@ use crate::diagnosis::arm::input::{ArmInput, ArmRecording};
 use crate::diagnosis::arm::{ArmDiagnosis, diagnose};
 use crate::diagnosis::difference::comparison::{Compared, ComparedChannel, Comparison};
 use crate::diagnosis::difference::localise::{robust_rms, root_mean_square};
+use crate::diagnosis::search::progress::Observer;
 use crate::recorded_arm::ArmParameters;
 use crate::recorded_arm::motion::Motion;
 use crate::recorded_arm::simulate::{Channel, RigidCourse, all_bristles, readings};
@@ -101,13 +102,17 @@ impl ArmCase {
     }
 
     /// Diagnoses it; what the improved file says is what predicts.
-    pub fn diagnosed(&self, start: Instant) -> Result<Diagnosed, CaseError> {
+    pub fn diagnosed(
+        &self,
+        start: Instant,
+        observer: &mut Observer<'_>,
+    ) -> Result<Diagnosed, CaseError> {
         let ArmDiagnosis {
             mut answer,
             tolerated,
             fitted,
             drives,
-        } = diagnose(&self.input, &mut |_| {});
+        } = diagnose(&self.input, observer);
         for note in &self.notes {
             answer.note(note.clone());
         }

@@ -11,6 +11,7 @@ use crate::recorded_arm::wrench::CHANNELS as WRENCH;
 use crate::recording::RecordingError;
 use crate::recording::csv::Log;
 use crate::recording::log::read_log;
+use crate::recording::schema::plain_joint;
 use crate::scenario::arm_file::ArmFile;
 
 /// Samples below which a log carries no information on drives.
@@ -34,13 +35,11 @@ enum Signal {
 }
 
 /// Ends of columns of a joint, of a prismatic one too.
-const SIGNALS: [(&str, Signal); 12] = [
+const SIGNALS: [(&str, Signal); 11] = [
     ("command_rad", Signal::Command),
     ("command_m", Signal::Command),
     ("rad_per_s", Signal::Speed),
     ("m_per_s", Signal::Speed),
-    // As an import writes it.
-    ("velocity_rad_per_s", Signal::Speed),
     ("link_rad", Signal::Link),
     ("link_m", Signal::Link),
     ("current_a", Signal::Current),
@@ -49,25 +48,56 @@ const SIGNALS: [(&str, Signal); 12] = [
     ("rad", Signal::Position),
     ("m", Signal::Position),
 ];
+/// Ends as an import writes them, and the usual ones.
+const IMPORTED: [(&str, &str); 4] = [
+    ("encoder_rad", "rad"),
+    ("position_rad", "rad"),
+    ("reference_rad", "command_rad"),
+    ("velocity_rad_per_s", "rad_per_s"),
+];
 
-/// Which joint, by its number in columns, and what of it.
-fn joint_signal(arm: &ArmFile, column: &str) -> Option<(usize, Signal)> {
-    let of = |rest: &str| {
+/// The joint of a column, by its number or by its name among `joints`, and the column's usual end.
+fn joint_and_end<'a>(
+    joints: impl IntoIterator<Item = (usize, &'a str)>,
+    column: &str,
+) -> Option<(usize, &'static str)> {
+    let usual = |rest: &str| {
+        let imported = IMPORTED.iter().find(|(end, _)| *end == rest);
+        let rest = imported.map_or(rest, |(_, usual)| usual);
         let found = SIGNALS.iter().find(|(end, _)| *end == rest);
-        found.map(|(_, signal)| *signal)
+        found.map(|(end, _)| *end)
     };
     if let Some(rest) = column.strip_prefix("joint_")
         && let Some((number, rest)) = rest.split_once('_')
         && let Ok(number) = number.parse()
     {
-        return Some((number, of(rest)?));
+        return Some((number, usual(rest)?));
     }
-    let joints = arm.nominal.chain.joints.iter().zip(&arm.numbers);
-    let mut named = joints.filter_map(|(joint, number)| {
-        let rest = column.strip_prefix(joint.name.as_str())?;
-        Some((*number, of(rest.strip_prefix('_')?)?))
+    let mut named = joints.into_iter().filter_map(|(number, name)| {
+        let plain = plain_joint(name);
+        let rest = column.strip_prefix(name);
+        let rest = rest.or_else(|| column.strip_prefix(plain.as_str()))?;
+        Some((number, usual(rest.strip_prefix('_')?)?))
     });
     named.next()
+}
+
+/// Which joint, by its number in columns, what of it, and the usual name of such a column.
+fn joint_signal(arm: &ArmFile, column: &str) -> Option<(usize, Signal, String)> {
+    let names = arm.nominal.chain.joints.iter().map(|j| j.name.as_str());
+    let joints = arm.numbers.iter().copied().zip(names);
+    let (number, end) = joint_and_end(joints, column)?;
+    let (_, signal) = SIGNALS.iter().find(|(own, _)| *own == end)?;
+    Some((number, *signal, format!("joint_{number}_{end}")))
+}
+
+/// The usual name of a joint's column, `joint_2_rad`, whatever calls the joint: its number or its name, of joints that are counted from 1.
+#[must_use]
+pub fn usual_column(joints: &[&str], column: &str) -> Option<String> {
+    let counted = joints.iter().enumerate();
+    let counted = counted.map(|(index, name)| (index + 1, *name));
+    let (number, end) = joint_and_end(counted, column)?;
+    Some(format!("joint_{number}_{end}"))
 }
 
 /// Column of a channel of a wrench sensor.
@@ -135,7 +165,7 @@ pub(super) fn read_log_of(arm: &ArmFile, path: &Path, name: &str) -> Result<ArmL
     let mut positions = vec![None; count];
     let mut channels = Vec::new();
     for (column, values) in std::mem::take(&mut log.columns) {
-        let Some((number, signal)) = joint_signal(arm, &column) else {
+        let Some((number, signal, usual)) = joint_signal(arm, &column) else {
             let channel = of_wrench(&column).filter(|_| arm.nominal.wrench.is_some());
             match channel {
                 Some(channel) => channels.push((Channel::Wrench(channel), column, values)),
@@ -152,13 +182,22 @@ pub(super) fn read_log_of(arm: &ArmFile, path: &Path, name: &str) -> Result<ArmL
         let drive = &arm.nominal.drives[joint];
         match signal {
             Signal::Command | Signal::Speed => {}
+            Signal::Position if positions[joint].is_some() => {
+                let found = format!("a second position of joint {number}");
+                return Err(column_error(
+                    &path,
+                    &column,
+                    found,
+                    "one of each".to_owned(),
+                ));
+            }
             Signal::Position => positions[joint] = Some(values),
-            Signal::Link => channels.push((Channel::Link(joint), column, values)),
+            Signal::Link => channels.push((Channel::Link(joint), usual, values)),
             Signal::Current if drive.logs_current => {
-                channels.push((Channel::Drive(joint), column, values));
+                channels.push((Channel::Drive(joint), usual, values));
             }
             Signal::Torque if !drive.logs_current => {
-                channels.push((Channel::Drive(joint), column, values));
+                channels.push((Channel::Drive(joint), usual, values));
             }
             Signal::Current => {
                 let found = "there, and its drive has no gain".to_owned();
@@ -173,6 +212,25 @@ pub(super) fn read_log_of(arm: &ArmFile, path: &Path, name: &str) -> Result<ArmL
         }
     }
     check_torques(arm, &path, &log, &channels)?;
+    let found = all_positions(arm, &path, positions, &log)?;
+    channels.sort_by_key(|(channel, ..)| *channel);
+    Ok(ArmLog {
+        path,
+        name: name.to_owned(),
+        log,
+        positions: found,
+        channels,
+    })
+}
+
+/// Positions of all joints, base first; refused where one is missing or no position of it.
+fn all_positions(
+    arm: &ArmFile,
+    path: &Path,
+    positions: Vec<Option<Vec<f64>>>,
+    log: &Log,
+) -> Result<Vec<Vec<f64>>, CaseError> {
+    let count = positions.len();
     let mut found = Vec::with_capacity(count);
     for (joint, values) in positions.into_iter().enumerate() {
         let unit = match arm.nominal.chain.joints[joint].kind {
@@ -182,19 +240,35 @@ pub(super) fn read_log_of(arm: &ArmFile, path: &Path, name: &str) -> Result<ArmL
         let column = format!("joint_{}_{unit}", arm.numbers[joint]);
         let Some(values) = values else {
             let expected = format!("it: positions of all {count} joints are inputs");
-            return Err(column_error(&path, &column, "missing".to_owned(), expected));
+            let found = match stray_position(&log.ignored) {
+                Some(other) => format!(
+                    "missing, and `{other}` is of no joint of {}, whose joints are {}",
+                    arm.urdf.display(),
+                    names_of(arm)
+                ),
+                None => "missing".to_owned(),
+            };
+            return Err(column_error(path, &column, found, expected));
         };
-        check_positions(arm, (&path, &column), joint, &values, &log.lines)?;
+        check_positions(arm, (path, &column), joint, &values, &log.lines)?;
         found.push(values);
     }
-    channels.sort_by_key(|(channel, ..)| *channel);
-    Ok(ArmLog {
-        path,
-        name: name.to_owned(),
-        log,
-        positions: found,
-        channels,
-    })
+    Ok(found)
+}
+
+/// The first column that is an angle of something that is no joint.
+fn stray_position(ignored: &[String]) -> Option<&String> {
+    let mut all = ignored.iter();
+    all.find(|column| column.ends_with("_rad") && !column.ends_with("_command_rad"))
+}
+
+/// Joints of the arm, base first.
+fn names_of(arm: &ArmFile) -> String {
+    let joints = arm.nominal.chain.joints.iter();
+    joints
+        .map(|j| j.name.as_str())
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 fn column_error(path: &Path, column: &str, found: String, expected: String) -> CaseError {
@@ -214,7 +288,7 @@ fn check_torques(
     channels: &[(Channel, String, Vec<f64>)],
 ) -> Result<(), CaseError> {
     let torque = log.ignored.iter().find_map(|column| {
-        let (number, signal) = joint_signal(arm, column)?;
+        let (number, signal, _) = joint_signal(arm, column)?;
         (signal == Signal::Torque).then_some((column, number))
     });
     let Some((column, number)) = torque else {

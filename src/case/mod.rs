@@ -26,6 +26,7 @@ pub use arm::{
     ARM, ArmLogs, ArmPrediction, LogSummary, PredictedColumn, arm_of, logs_of, predict_arm,
     unrecorded,
 };
+pub use arm_recording::usual_column;
 pub use band::{Predicted, predicted_by};
 pub use cell::is_cell_case;
 pub use diagnosed::{DRIVES, Diagnosed, IDENTIFIED, IMPROVED, IMPROVED_ARM};
@@ -350,7 +351,7 @@ pub fn diagnose(
             diagnosed
         }
         Kind::Flange { rig, runs, unseen } => of_flange_runs(rig, runs, unseen.as_deref(), start)?,
-        Kind::Arm(case) => case.diagnosed(start)?,
+        Kind::Arm(case) => case.diagnosed(start, observer)?,
     };
     diagnosed.answer.details.case.clone_from(&case.name);
     diagnosed.answer.details.provenance = provenance;

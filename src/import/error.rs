@@ -192,6 +192,20 @@ pub enum ImportError {
         /// The likely form, if that is known.
         advice: &'static str,
     },
+    /// A clock that starts again.
+    #[error("{}:{line}: time {found} s after {before} s: the clock starts again there, and with it another recording; `idc import --split` writes each by itself (of a map with one [[file]]), `drop_last_rows = {}` in [[file]] takes the one before, `drop_first_rows = {}` the one after", file.display(), dropped[1], dropped[0])]
+    Restart {
+        /// The file.
+        file: PathBuf,
+        /// Its line, from 1.
+        line: u64,
+        /// The time [s].
+        found: f64,
+        /// The time before it [s].
+        before: f64,
+        /// Rows at the start and at the end that are to be dropped for either part.
+        dropped: [usize; 2],
+    },
     /// Nothing is left.
     #[error("{}: of {rows} rows the map drops {dropped}, expected 2 at least to be left", file.display())]
     TooShort {

@@ -159,6 +159,39 @@ fn fall(time: &[f64], rows: &[usize]) -> bool {
 /// Ratio from which a time may have fallen by a thousand, less some steps.
 const THOUSANDFOLD: std::ops::RangeInclusive<f64> = 900.0..=1001.0;
 
+/// Whether a clock starts again where a time is behind the one before it, and did not only come late: that goes back by little.
+pub(super) fn starts_again([first, before, found]: [f64; 3]) -> bool {
+    found - first < 0.5 * (before - first)
+}
+
+/// The refusal of a time that goes back behind the one before it; `dropped` are the rows that leave out all from there on, or all before.
+fn back(
+    path: &Path,
+    map: &FileMap,
+    line: u64,
+    [first, before, found]: [f64; 3],
+    dropped: [usize; 2],
+) -> ImportError {
+    let file = path.to_owned();
+    let advice = fallen(found, before);
+    if advice.is_empty() && starts_again([first, before, found]) && map.form != Form::Bag {
+        return ImportError::Restart {
+            file,
+            line,
+            found,
+            before,
+            dropped,
+        };
+    }
+    ImportError::Time {
+        file,
+        line,
+        found,
+        before,
+        advice,
+    }
+}
+
 /// Pattern of a time that goes back to a thousandth: `1.000` after `999`.
 fn fallen(time: f64, before: f64) -> &'static str {
     if THOUSANDFOLD.contains(&(before / time)) {
@@ -220,13 +253,12 @@ fn of_rows(path: &Path, map: &FileMap, rows: Rows) -> Result<Log, ImportError> {
     for row in kept {
         if let Some(&before) = taken.last() {
             if time[row] < time[before] {
-                return Err(ImportError::Time {
-                    file: path.to_owned(),
-                    line: lines[row],
-                    found: time[row],
-                    before: time[before],
-                    advice: fallen(time[row], time[before]),
-                });
+                let stamps = [time[taken[0]], time[before], time[row]];
+                let dropped = [
+                    map.dropped[0] + row - first,
+                    map.dropped[1] + count - last - row,
+                ];
+                return Err(back(path, map, lines[row], stamps, dropped));
             }
             if time[row] == time[before] {
                 let repeats = columns.iter().all(|c| same(c[row], c[before]));

@@ -191,6 +191,16 @@ pub fn joint_quantity(joint: usize, signal: JointSignal) -> String {
     format!("joint_{joint}_{}", signal.name())
 }
 
+/// A joint's name as names of quantities have it: small letters, digits and underscores.
+#[must_use]
+pub fn plain_joint(joint: &str) -> String {
+    let plain = |c: char| match c.is_ascii_alphanumeric() {
+        true => c.to_ascii_lowercase(),
+        false => '_',
+    };
+    joint.chars().map(plain).collect()
+}
+
 /// The joint (from 1) and signal of a name made by [`joint_quantity`].
 #[must_use]
 pub fn parse_joint_quantity(quantity: &str) -> Option<(usize, JointSignal)> {

@@ -175,7 +175,7 @@ fn element(kind: u32, content: &[u8]) -> Vec<u8> {
     bytes
 }
 
-const HEADER: &str = "\
+pub const HEADER: &str = "\
 ================================================================================
 MSG: std_msgs/Header
 builtin_interfaces/Time stamp
@@ -185,7 +185,7 @@ MSG: builtin_interfaces/Time
 int32 sec
 uint32 nanosec
 ";
-const WRENCH: &str = "\
+pub const WRENCH: &str = "\
 # A wrench with reference coordinate frame and timestamp
 std_msgs/Header header
 Wrench wrench
@@ -199,7 +199,7 @@ float64 x
 float64 y
 float64 z
 ";
-const JOINTS: &str = "\
+pub const JOINT_STATE: &str = "\
 std_msgs/Header header
 
 string[] name
@@ -233,7 +233,7 @@ pub fn mcap(path: &Path, compression: Option<mcap::Compression>) {
     let ros = ["ros2msg", "cdr"];
     let wrench = format!("{WRENCH}{HEADER}");
     let wrench = channel("/wrench", "geometry_msgs/msg/WrenchStamped", ros, &wrench);
-    let joints = format!("{JOINTS}{HEADER}");
+    let joints = format!("{JOINT_STATE}{HEADER}");
     let joints = channel("/joint_states", "sensor_msgs/msg/JointState", ros, &joints);
     let set = channel("/set", "std_msgs/msg/Float64", ros, "float64 data\n");
     let camera = channel("/camera", "foxglove.Image", ["protobuf", "protobuf"], "");

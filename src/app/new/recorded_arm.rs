@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::super::error::AppError;
 use crate::arm::{Arm, ArmOptions, JointKind, load_arm, mount_of_recorded};
+use crate::case::usual_column;
 use crate::cell::CellError;
 use crate::recording::csv::Log;
 use crate::recording::log::read_log;
@@ -38,7 +39,8 @@ pub(super) fn text(
         ..ArmOptions::default()
     };
     let arm = load_arm(urdf, &options).map_err(CellError::from)?;
-    let seen = log.map(|path| seen(path, file)).transpose()?;
+    let joints: Vec<&str> = arm.chain.joints.iter().map(|j| j.name.as_str()).collect();
+    let seen = log.map(|path| seen(path, file, &joints)).transpose()?;
     let seen = seen.as_ref();
     let folder = file.parent().unwrap_or(Path::new(""));
     let mut text = head(&arm, &named_from(folder, urdf), &mount.flange_link);
@@ -186,10 +188,16 @@ fn sensors(arm: &Arm, seen: Option<&Seen>) -> String {
     text
 }
 
-fn seen(path: &Path, file: &Path) -> Result<Seen, AppError> {
-    let log = read_log(path, |name| {
-        name.starts_with("joint_") || name.starts_with("wrench_")
+fn seen(path: &Path, file: &Path, joints: &[&str]) -> Result<Seen, AppError> {
+    let usual = |name: &str| usual_column(joints, name);
+    let mut log = read_log(path, |name| {
+        usual(name).is_some() || name.starts_with("wrench_")
     })?;
+    for (name, _) in &mut log.columns {
+        if let Some(usual) = usual(name) {
+            *name = usual;
+        }
+    }
     if !log
         .columns
         .iter()

@@ -14,6 +14,7 @@ use super::search::search;
 use crate::diagnosis::answer::details::{DETAILS_SCHEMA, Details};
 use crate::diagnosis::answer::{Answer, Extent, SCHEMA, Verdict};
 use crate::diagnosis::difference::mismatch::Mismatch;
+use crate::diagnosis::search::progress::{Observer, Step};
 use crate::effects::UNLISTED;
 use crate::recorded_arm::ArmParameters;
 
@@ -33,12 +34,14 @@ pub struct ArmDiagnosis {
     pub drives: Vec<DriveNumbers>,
 }
 
-/// Diagnoses a recorded arm; `observer` gets the number of each stage of the search.
+/// Diagnoses a recorded arm; `observer` gets its progress.
 #[must_use]
-pub fn diagnose(input: &ArmInput, observer: &mut dyn FnMut(usize)) -> ArmDiagnosis {
+pub fn diagnose(input: &ArmInput, observer: &mut Observer<'_>) -> ArmDiagnosis {
+    observer(&Step::Baseline.begins());
     let touching = touching(input);
     let evidence = Evidence::of(input, &touching);
     let mut found = search(&evidence, observer);
+    observer(&Step::Localisation.begins());
     for push in held_pushes(input, &found.best.fit.arm) {
         let placed = candidate(push).applied(&mut found.best.fit.arm);
         if let Some(added) = found.best.fit.arm.pushes.last_mut() {

@@ -17,6 +17,7 @@ use super::fit::{Columns, Fit, Scales, correlation_of, products, scales_of, weig
 use super::hypothesis::{Hypothesis, screen};
 use super::laws::laws;
 use super::pushed::pushes;
+use crate::diagnosis::search::progress::{Observer, Step};
 use crate::recorded_arm::Quantity;
 use crate::recorded_arm::law::{JointLaw, Shape};
 
@@ -86,9 +87,9 @@ struct Search<'a> {
     scales: Scales,
 }
 
-/// Searches for what is missing.
+/// Searches for what is missing; `observer` gets each stage.
 #[must_use]
-pub fn search(evidence: &Evidence, observer: &mut dyn FnMut(usize)) -> Found {
+pub fn search(evidence: &Evidence, observer: &mut Observer<'_>) -> Found {
     let mut columns = Columns::default();
     let mut scales = vec![1.0; evidence.rows.len()];
     let mut nominal = Hypothesis::nominal(evidence, &scales, &mut columns);
@@ -105,7 +106,12 @@ pub fn search(evidence: &Evidence, observer: &mut dyn FnMut(usize)) -> Found {
     let mut best = nominal.clone();
     let mut stages: Vec<Stage> = Vec::new();
     for number in 0..MOST {
-        observer(number);
+        let step = match number {
+            0 => Step::RoughFit,
+            1 => Step::FullFit,
+            _ => Step::Variation,
+        };
+        observer(&step.with(format!("stage {}", number + 1)));
         let (tried, accepted) = search.stage(&best, &stages);
         let next = accepted.map(|i| tried[i].hypothesis.clone());
         stages.push(Stage { tried, accepted });

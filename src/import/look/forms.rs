@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::seen::{Because, Cells, Line, Looked, SaidUnit, Seen, TimeSeen};
 use super::time::toml_text;
-use super::{names, text, units};
+use super::{lerobot, names, text, units};
 use crate::import::encoding::DetectedEncoding;
 use crate::import::error::ImportError;
 use crate::import::map::{Column, Pressure};
@@ -23,6 +23,7 @@ fn form(name: &str, why: &str) -> Vec<Line> {
 /// Looks at a Parquet table; columns that hold neither numbers nor stamps are left out.
 pub(super) fn parquet(path: &Path) -> Result<Looked, ImportError> {
     let names = Table::open(path)?.names();
+    let robot = lerobot::feature_names(path);
     let mut columns = Vec::new();
     for (place, name) in names.iter().enumerate() {
         // A column that cannot be read is none to choose.
@@ -35,12 +36,12 @@ pub(super) fn parquet(path: &Path) -> Result<Looked, ImportError> {
         let whole = name.split('[').next().unwrap_or(name);
         columns.push(Seen {
             column: Column::Name(name.clone()),
-            name: name.clone(),
+            name: robot.get(name).unwrap_or(name).clone(),
             joint: None,
             frames: Vec::new(),
             // An element of a list has the list's.
             unit: units::of_name(if name.ends_with(']') { whole } else { name })
-                .or_else(|| units::of_name(name)),
+                .or_else(|| units::of_name(name).filter(|_| !is_element(name))),
             cells,
         });
     }
@@ -60,6 +61,14 @@ pub(super) fn parquet(path: &Path) -> Result<Looked, ImportError> {
         columns,
         ..Looked::default()
     })
+}
+
+/// Whether a column is an element of a list: `[1]` behind its name is no unit.
+fn is_element(name: &str) -> bool {
+    let inside = name
+        .strip_suffix(']')
+        .and_then(|name| name.rsplit_once('['));
+    inside.is_some_and(|(_, index)| index.chars().all(|c| c.is_ascii_digit()))
 }
 
 /// Cells of a table that knows their types.

@@ -1,4 +1,5 @@
-//! Joints of an arm in a bag: what their encoders read, their speeds and their drives' torques, under the names that recordings of cells have.
+//! Joints of an arm in a bag: what their encoders read, their speeds and their drives' torques, under the names that recordings of cells have; by the joints' own
+//! names where nothing tells their order and the log is of an arm alone, so that its URDF can.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +8,7 @@ use super::names::{self, Thing};
 use super::seen::{Because, Seen};
 use crate::import::map::Column;
 use crate::recording::Unit;
-use crate::recording::schema::{JointSignal, joint_quantity};
+use crate::recording::schema::{self, JointSignal};
 
 /// Joints of the arms of Universal Robots, base first; their messages have them in another order.
 const NAMED: [&str; 6] = [
@@ -19,8 +20,11 @@ const NAMED: [&str; 6] = [
     "wrist_3",
 ];
 
-/// Joints of the first topic that names any, base first; what stands at the places taken is left out.
-pub(super) fn joints(columns: &[Seen], taken: &[usize]) -> Vec<Pick> {
+/// Words of what is no joint of the arm itself.
+pub(super) const JOINTLESS: [&str; 3] = ["finger", "gripper", "knuckle"];
+
+/// Joints of the first topic that names any, base first; what stands at the places taken is left out. `of_cell` counts them in any case.
+pub(super) fn joints(columns: &[Seen], taken: &[usize], of_cell: bool) -> Vec<Pick> {
     let free = |place: &usize| !taken.contains(place);
     let of_arm: Vec<usize> = (0..columns.len())
         .filter(free)
@@ -52,14 +56,32 @@ pub(super) fn joints(columns: &[Seen], taken: &[usize]) -> Vec<Pick> {
         let (Some(index), Some(signal)) = (index, signal(column)) else {
             continue;
         };
-        let quantity = joint_quantity(numbers[index], signal);
+        let number = (of_cell || why.is_certain).then(|| numbers[index]);
+        let (quantity, because) = quantity_of_joint(number, joints[index], signal.name(), &why);
         if picks.iter().all(|(_, pick)| pick.quantity != quantity) {
-            let pick = Pick::new(quantity, place, why.clone(), signal.unit());
+            let pick = Pick::new(quantity, place, because, signal.unit());
             picks.push((numbers[index], pick));
         }
     }
     picks.sort_by_key(|(number, pick)| (*number, pick.place));
     picks.into_iter().map(|(_, pick)| pick).collect()
+}
+
+/// Quantity of a joint, by its number or by its own name, and how sure that is.
+pub(super) fn quantity_of_joint(
+    number: Option<usize>,
+    joint: &str,
+    signal: &str,
+    why: &Because,
+) -> (String, Because) {
+    match number {
+        Some(number) => (format!("joint_{number}_{signal}"), why.clone()),
+        None => {
+            let why = "by the joint's own name, which the arm's URDF must have";
+            let joint = schema::plain_joint(joint);
+            (format!("{joint}_{signal}"), Because::likely(why))
+        }
+    }
 }
 
 /// Signal of a joint that a column may be, by its unit.
@@ -81,10 +103,7 @@ fn is_of_arm(column: &Seen) -> bool {
     let slides = names::said(joint)
         .thing
         .is_some_and(|(thing, _)| thing == Thing::Stroke);
-    !slides
-        && !["finger", "gripper", "knuckle"]
-            .iter()
-            .any(|word| lower.contains(word))
+    !slides && !JOINTLESS.iter().any(|word| lower.contains(word))
 }
 
 /// Topic of a column: what stands before its field.
@@ -96,7 +115,7 @@ fn topic(column: &Seen) -> Option<&str> {
 }
 
 /// Numbers of joints from the base, from 1, and how sure that is.
-fn numbered(joints: &[&str]) -> (Vec<usize>, Because) {
+pub(super) fn numbered(joints: &[&str]) -> (Vec<usize>, Because) {
     let digits = |joint: &&str| {
         let end = joint.trim_end_matches(|c: char| !c.is_ascii_digit());
         let start = end.trim_end_matches(|c: char| c.is_ascii_digit()).len();

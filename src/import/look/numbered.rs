@@ -1,7 +1,8 @@
 //! Joints of an arm in the logs of its controller: a column for each joint and signal, by what the makers' exports call them.
 //!
 //! Sources: Universal Robots, "Real-Time Data Exchange (RTDE) Guide", fields `actual_q`, `actual_qd`, `actual_current`, `target_q`; KUKA.RobotSensorInterface
-//! 4.1, `AIPos`, `ASPos`, `MACur`; Franka Control Interface, `RobotState` (`q`, `dq`, `tau_J`, `q_d`); LeRobot dataset format 2, `observation.state`, `action`.
+//! 4.1, `AIPos`, `ASPos`, `MACur`, and the variables `$AXIS_ACT`, `$TORQUE_AXIS_ACT`; Franka Control Interface, `RobotState` (`q`, `dq`, `tau_J`, `q_d`); LeRobot
+//! dataset format 2 and 3, `observation.state`, `action`.
 
 use std::collections::BTreeSet;
 
@@ -19,7 +20,7 @@ const AMPERES: f64 = 200.0;
 
 /// What such columns hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Signal {
+pub(super) enum Signal {
     Position,
     Command,
     Speed,
@@ -29,23 +30,34 @@ enum Signal {
 
 use Signal::{Command, Current, Position, Speed, Torque};
 
-/// Names without the joint's number, their words in small letters, those of makers before those of everybody; the unit where the maker says it.
+/// Signals in the order of a map.
+pub(super) const SIGNALS: [Signal; 5] = [Position, Command, Speed, Current, Torque];
+
+/// Names without the joint, their words in small letters, those of makers before those of everybody; the unit where the maker says it.
 #[rustfmt::skip] // A table: a name a line.
-const NAMES: [(&str, Signal, Option<&str>); 45] = [
+pub(super) const NAMES: [(&str, Signal, Option<&str>); 59] = [
     ("actual_q", Position, Some("rad")), ("actual_qd", Speed, Some("rad/s")), ("actual_current", Current, Some("A")), ("target_q", Command, Some("rad")),
     ("q_actual", Position, Some("rad")), ("qd_actual", Speed, Some("rad/s")), ("i_actual", Current, Some("A")), ("q_target", Command, Some("rad")),
     ("aipos", Position, Some("deg")), ("aspos", Command, Some("deg")), ("macur", Current, None), ("axis_act", Position, Some("deg")),
+    ("torque_axis_act", Torque, Some("Nm")),
     ("q", Position, None), ("dq", Speed, None), ("tau", Torque, Some("Nm")), ("q_d", Command, None), ("qd", Speed, None),
-    ("observation_state", Position, None), ("action", Command, None),
+    ("observation_state", Position, None), ("action", Command, None), ("observation_velocity", Speed, None), ("observation_effort", Torque, None),
+    ("observation_torque", Torque, None), ("observation_current", Current, None),
     ("position", Position, None), ("positions", Position, None), ("pos", Position, None), ("angle", Position, None), ("actual_position", Position, None),
     ("position_actual", Position, None), ("winkel", Position, None), ("measured_position", Position, None), ("encoder", Position, None),
     ("velocity", Speed, None), ("velocities", Speed, None), ("vel", Speed, None), ("speed", Speed, None), ("actual_velocity", Speed, None),
-    ("current", Current, None), ("currents", Current, None), ("motor_current", Current, None), ("strom", Current, None), ("motorstrom", Current, None),
-    ("torque", Torque, None), ("torques", Torque, None), ("motor_torque", Torque, None), ("actual_torque", Torque, None), ("effort", Torque, None),
-    ("drehmoment", Torque, None), ("command", Command, None),
+    ("measured_velocity", Speed, None),
+    ("current", Current, None), ("currents", Current, None), ("motor_current", Current, None), ("strom", Current, None),
+    ("motorstrom", Current, None),
+    ("torque", Torque, None), ("torques", Torque, None), ("motor_torque", Torque, None), ("actual_torque", Torque, None), ("measured_torque", Torque, None),
+    ("effort", Torque, None), ("drehmoment", Torque, None),
+    ("command", Command, None), ("commanded_position", Command, None), ("position_command", Command, None), ("target_position", Command, None),
+    ("desired_position", Command, None), ("reference", Command, None), ("reference_position", Command, None), ("cmd", Command, None),
 ];
 /// Words that stand beside a joint's number and say no more.
 const JOINT: [&str; 6] = ["joint", "axis", "achse", "j", "a", "jt"];
+/// Words before a name that say where its program keeps it.
+const OWNERS: [&str; 4] = ["state", "robot_state", "joint_states", "joint_state"];
 
 /// A column of a joint.
 struct Numbered {
@@ -61,7 +73,7 @@ pub(super) fn numbered_joints(columns: &[Seen], taken: &[usize]) -> Vec<Pick> {
         .filter(|place| columns[*place].joint.is_none() && !columns[*place].numbers().is_empty())
         .filter_map(|place| {
             let (words, number) = parts(&columns[place].name)?;
-            let name = NAMES.iter().position(|(name, ..)| *name == words)?;
+            let name = words.iter().find_map(|words| named(words))?;
             Some(Numbered {
                 place,
                 number,
@@ -85,23 +97,20 @@ pub(super) fn numbered_joints(columns: &[Seen], taken: &[usize]) -> Vec<Pick> {
     };
     let joints = numbers(position);
     let from = usize::from(joints.first() == Some(&0));
-    let angle = unit(columns, &of(position).collect::<Vec<_>>(), None);
+    let places = |name: usize| of(name).map(|c| c.place).collect::<Vec<usize>>();
+    let angle = unit(columns, position, &places(position), None);
     let Some(angle) = angle.filter(|angle| angle.unit.si == Unit::Radian) else {
         return Vec::new();
     };
     let mut picks: Vec<(usize, usize, Pick)> = Vec::new();
-    for (order, signal) in [Position, Command, Speed, Current, Torque]
-        .into_iter()
-        .enumerate()
-    {
+    for (order, signal) in SIGNALS.into_iter().enumerate() {
         let Some(name) = first(signal, Some(&joints)) else {
             continue;
         };
-        let own: Vec<&Numbered> = of(name).collect();
-        let Some(unit) = unit(columns, &own, Some(&angle)) else {
+        let Some(unit) = unit(columns, name, &places(name), Some(&angle)) else {
             continue;
         };
-        for column in own {
+        for column in of(name) {
             let number = column.number + from;
             let why = format!("`{}` with the number of a joint", NAMES[name].0);
             let quantity = format!("joint_{number}_{}", quantity(signal));
@@ -122,7 +131,18 @@ fn is_arm(numbers: &BTreeSet<usize>) -> bool {
     numbers.len() >= LEAST && *first <= 1 && last - first + 1 == numbers.len()
 }
 
-fn quantity(signal: Signal) -> &'static str {
+/// Row of a name; of one that stands behind where its program keeps it, too.
+fn named(words: &str) -> Option<usize> {
+    let of = |words: &str| NAMES.iter().position(|(name, ..)| *name == words);
+    let owned = || {
+        let mut owners = OWNERS.iter();
+        owners.find_map(|owner| of(words.strip_prefix(owner)?.strip_prefix('_')?))
+    };
+    of(words).or_else(owned)
+}
+
+/// Word of a signal in the quantity of a map.
+pub(super) fn quantity(signal: Signal) -> &'static str {
     match signal {
         Position => "encoder",
         Command => "reference",
@@ -132,7 +152,8 @@ fn quantity(signal: Signal) -> &'static str {
     }
 }
 
-fn si(signal: Signal) -> Unit {
+/// Unit of a signal.
+pub(super) fn si(signal: Signal) -> Unit {
     match signal {
         Position | Command => Unit::Radian,
         Speed => Unit::RadianPerSecond,
@@ -141,8 +162,8 @@ fn si(signal: Signal) -> Unit {
     }
 }
 
-/// Words of a name without units and the joint's number, and the number.
-fn parts(name: &str) -> Option<(String, usize)> {
+/// Words of a name without units and the joint's number, all of them and without those that stand beside a joint's number; and the number.
+fn parts(name: &str) -> Option<([String; 2], usize)> {
     // A unit in brackets is not the name; a number in brackets is the joint's.
     let mut plain = String::new();
     let mut rest = name;
@@ -196,15 +217,22 @@ fn parts(name: &str) -> Option<(String, usize)> {
     } else {
         without.join("_")
     };
-    Some((joined, number?))
+    // `AXIS_ACT.A1`: the letter is the number's.
+    if words.len() > 1 && words.last().is_some_and(|word| word == "a") {
+        words.pop();
+    }
+    Some(([words.join("_"), joined], number?))
 }
 
 /// Unit of the columns of one name: as the log says it, as the maker does, or by the size of all of them together.
-fn unit(columns: &[Seen], own: &[&Numbered], angle: Option<&SaidUnit>) -> Option<SaidUnit> {
-    let (_, signal, of_maker) = NAMES[own.first()?.name];
-    let said = own
-        .iter()
-        .find_map(|column| columns[column.place].unit.clone());
+pub(super) fn unit(
+    columns: &[Seen],
+    name: usize,
+    own: &[usize],
+    angle: Option<&SaidUnit>,
+) -> Option<SaidUnit> {
+    let (_, signal, of_maker) = NAMES[name];
+    let said = own.iter().find_map(|place| columns[*place].unit.clone());
     if let Some(said) = said.filter(|said| said.unit.si == si(signal)) {
         return Some(said);
     }
@@ -221,9 +249,7 @@ fn unit(columns: &[Seen], own: &[&Numbered], angle: Option<&SaidUnit>) -> Option
             Because::certain("that is what the robot's maker writes"),
         );
     }
-    let ranges = own
-        .iter()
-        .filter_map(|column| columns[column.place].range());
+    let ranges = own.iter().filter_map(|place| columns[*place].range());
     let peak = ranges
         .flatten()
         .fold(0.0, |peak: f64, value| peak.max(value.abs()));

@@ -3,10 +3,14 @@
 use super::assign::{Pick, assign};
 use super::clocks::{Clocks, clocks};
 use super::joints::joints;
+use super::named::named_joints;
 use super::numbered::numbered_joints;
 use super::seen::{Looked, Seen, TimeSeen};
 use super::time::{self, TimeChoice};
+use super::unnamed::unnamed_joints;
+use super::wrench::wrench;
 use crate::import::map::Column;
+use crate::recording::{Unit, schema};
 
 /// A file of the map.
 pub(super) struct Section {
@@ -52,18 +56,39 @@ fn rate(section: &Section) -> f64 {
     section.time.as_ref().map_or(0.0, |time| time.rate)
 }
 
-/// Quantities of the device and joints of an arm in columns, but for those at some places and those that are given.
+/// Quantities of the device, or of an arm alone, in columns, but for those at some places and those that are given.
 fn all_picks(columns: &[Seen], taken: &[usize], given: &[String]) -> Vec<Pick> {
-    // What has the number of a joint is nothing of the device.
-    let of_arm = numbered_joints(columns, taken);
-    let places = |picks: &[Pick]| picks.iter().map(|pick| pick.place).collect::<Vec<_>>();
-    let taken = [taken, &places(&of_arm)].concat();
-    let mut picks = assign(columns, &taken);
-    let taken = [taken, places(&picks)].concat();
-    picks.extend(of_arm);
-    picks.extend(joints(columns, &taken));
+    let with = |picks: &[Pick], taken: &[usize]| -> Vec<usize> {
+        let places = picks.iter().map(|pick| pick.place);
+        places.chain(taken.iter().copied()).collect()
+    };
+    // What has the number or the name of a joint is nothing of the device.
+    let mut of_arm = numbered_joints(columns, taken);
+    if of_arm.is_empty() {
+        of_arm = named_joints(columns, taken);
+    }
+    if of_arm.is_empty() {
+        of_arm = unnamed_joints(columns);
+    }
+    let mut picks = assign(columns, &with(&of_arm, taken));
+    let of_cell = picks.iter().any(is_of_device);
+    let in_bag = joints(columns, &with(&picks, &with(&of_arm, taken)), of_cell);
+    of_arm.extend(in_bag);
+    if of_arm.is_empty() || of_cell {
+        picks.extend(of_arm);
+    } else {
+        // Joints first: their times are those of the recording.
+        let readings = wrench(columns, &with(&of_arm, taken));
+        picks = of_arm;
+        picks.extend(readings);
+    }
     picks.retain(|pick| !given.iter().any(|quantity| *quantity == pick.quantity));
     picks
+}
+
+/// Whether a quantity is one that an arm without a device does not have: an arm has poses and forces of its own.
+fn is_of_device(pick: &Pick) -> bool {
+    pick.kind == Unit::Pascal || pick.quantity == schema::VALVE_EXTENDS && pick.because.is_certain
 }
 
 /// Files of a log with a column for each variable.

@@ -4,6 +4,7 @@ use super::assign::described;
 use super::names::{parts, said, says_time};
 use super::seen::{Because, Cells, Looked, SaidRate, SaidUnit, Seen, TimeSeen};
 use super::units::shown;
+use crate::import::log::starts_again;
 use crate::import::map::Column;
 use crate::import::stamps::are_whole_seconds;
 use crate::import::units::{self, LogUnit};
@@ -387,10 +388,14 @@ fn of_numbers(
     choice: &mut TimeChoice,
 ) {
     let column = &columns[place];
-    let Some(rise) = rises(column.numbers(), logs) else {
+    let Some(mut rise) = rises(column.numbers(), logs) else {
         return;
     };
-    if !rise.is_rising(logs) {
+    let falls = rise.falls;
+    let again = falls >= logs && begins_again(column.numbers());
+    let starts = if again { logs + falls } else { logs };
+    rise = rises(column.numbers(), starts).unwrap_or(rise);
+    if !rise.is_rising(starts) {
         let what = if rise.falls > 0 {
             format!(
                 "its times go back {} times: two recordings in one log?",
@@ -418,6 +423,23 @@ fn of_numbers(
     } else {
         numbers.by_steps(choice);
     }
+    if again {
+        choice.because.is_certain = false;
+        choice.because.why += &format!(
+            "; its times go back {falls} times, as a clock that starts again: `idc import --split` writes each recording by itself"
+        );
+    }
+}
+
+/// Whether times go back as those of a clock that starts again, wherever they do.
+fn begins_again(values: &[f64]) -> bool {
+    let mut first = 0;
+    let falls = (1..values.len()).filter(|row| values[*row] < values[row - 1]);
+    falls.into_iter().all(|row| {
+        let stamps = [values[first], values[row - 1], values[row]];
+        first = row;
+        starts_again(stamps)
+    })
 }
 
 impl Numbers<'_> {

@@ -16,6 +16,9 @@ use crate::recording::{Unit, schema};
 /// Column at which comments begin.
 const COMMENT: usize = 44;
 
+/// End of the quantity of a joint's angle.
+const ENCODER: &str = "_encoder";
+
 /// Inputs of a whole device, and the remedy for one that the logs lack.
 const DRIVING: [(&str, &str, &str); 3] = [
     (
@@ -383,6 +386,12 @@ fn unused(page: &mut Page, parts: &Sections) {
 /// Inputs of a whole device that no log holds.
 fn constants(page: &mut Page) {
     let found: Vec<&String> = page.found.iter().map(|(quantity, _)| quantity).collect();
+    let is_input = |quantity: &&String| DRIVING.iter().any(|(own, ..)| quantity == own);
+    let is_joint = |quantity: &&String| quantity.ends_with(ENCODER);
+    if found.iter().any(is_joint) && !found.iter().any(is_input) {
+        // An arm alone has no device that is driven.
+        return;
+    }
     let measured = QUANTITIES
         .iter()
         .any(|(quantity, _)| found.iter().any(|f| *f == quantity));
