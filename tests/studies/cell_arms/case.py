@@ -16,6 +16,8 @@ from .cell import Cell
 SEED = 20261201
 LEAST, MOST = 3.0, 40.0  # Sizes: largest RMS of what the effect changes in one channel and recording [standard deviations of its sensor].
 COARSE = 10  # Steps of the engine to a sample while a size is sought.
+# Effects of these are sized by what the device's sensors see: a contact some milliseconds earlier moves a wrench by more than any of them, once.
+BY_DEVICE = ("arm", "workpiece", "force_balance", "chambers", "regulator")
 DEVICE = (("regulator_pressure_pa", 0), ("stroke_m", 6), ("force_n", 2))
 FIT = ("a", "b")
 
@@ -59,6 +61,8 @@ class Case:
             there, gone = plant.read(numbers, motion, self.starts[key]), plant.read(cause.without, without[key], self.starts[key])
             apart = ~(self.bangs(motion) | self.bangs(without[key]))
             for channel, noise in self.noise.items():
+                if cause.subsystem in BY_DEVICE and channel != "device":
+                    continue
                 rms = np.sqrt(np.mean(((there[channel] - gone[channel])[apart] / noise) ** 2, axis=0))
                 if rms.max() > largest:
                     largest, seen = float(rms.max()), f"{key} {self.column(channel, int(rms.argmax()))}"

@@ -55,12 +55,12 @@ def tool_weight_error(rng, b):
 
 
 def part_misplaced(rng, b):
-    signs, tilt = rng.choice([-1, 1], 2), rng.uniform(1e-3, 6e-3)
+    signs, steep = rng.choice([-1, 1], 2), rng.uniform(1e-3, 8e-3)
 
     def at(s):
-        shift = signs[0] * (1e-4 + 2e-3 * s)
-        return _device(b, shift=shift, tilt=signs[1] * tilt), {"shift_m": shift, "tilt_m_per_m": signs[1] * tilt}
-    return Drawn("part_misplaced", "workpiece", {}, b.truth, at, lambda p: dict(shift_m=max(5e-5, 0.1 * abs(p["shift_m"])), tilt_m_per_m=max(5e-4, 0.1 * tilt)))
+        shift, tilt = signs[0] * (5e-5 + 2e-3 * s), signs[1] * (2e-4 + steep * s)
+        return _device(b, shift=shift, tilt=tilt), {"shift_m": shift, "tilt_m_per_m": tilt}
+    return Drawn("part_misplaced", "workpiece", {}, b.truth, at, lambda p: dict(shift_m=max(5e-5, 0.1 * abs(p["shift_m"])), tilt_m_per_m=max(5e-4, 0.1 * abs(p["tilt_m_per_m"]))))
 
 
 def burr(rng, b):
