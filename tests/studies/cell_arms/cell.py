@@ -139,7 +139,7 @@ class Cell:
         strokes = rng.permutation([0.42, 0.5, 0.58]) * stroke
         self.programs = {}
         for k, name in enumerate(("a", "b", "predict")):
-            pressure = [round(x, -3) for x in np.array([1.0, rng.uniform(1.15, 1.4)]) * shares[k] * force / self.device["area_1"]]
+            pressure = [round(min(x, 5.5e5), -3) for x in np.array([1.0, rng.uniform(1.15, 1.4)]) * shares[k] * force / self.device["area_1"]]
             standoff = (stroke - strokes[k]) + rng.uniform(0.05, 0.08)
             plan = {"lean": leans[k], "speed": speeds[k], "stroke": strokes[k], "pressures": pressure, "roll": roll, "places": (0.015, self.length - 0.015), "standoff": standoff, "swing": 0.1, "aside": 1.0}
             for _ in range(12):
