@@ -53,7 +53,7 @@ def run(idc, out, number, longest):
     print(f"{case} {time.monotonic() - began:.0f} s", file=sys.stderr, flush=True)
 
 
-def judged(out, number):
+def scored(out, number):
     """One case: truth and answer by names with places, confidences, sizes and intervals."""
     case = f"case-{number:02}"
     truth = json.loads((out / "truth" / f"{case}.json").read_text())
@@ -127,7 +127,7 @@ def main():
             shutil.rmtree(a.out / "answers" / f"case-{number:02}", ignore_errors=True)
     with ThreadPoolExecutor(a.jobs) as pool:
         list(pool.map(lambda number: run(idc, a.out, number, a.longest), numbers))
-    cases = [judged(a.out, number) for number in numbers]
+    cases = [scored(a.out, number) for number in numbers]
     text = table(cases, a.note)
     print(text)
     if a.write:
