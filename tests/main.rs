@@ -6,6 +6,7 @@ mod arm_logs;
 mod bad_input;
 mod balance;
 mod bench_reference;
+mod cell_drives;
 mod collision;
 mod command_line;
 mod common;

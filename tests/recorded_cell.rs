@@ -18,7 +18,7 @@ use rand_distr::StandardNormal;
 use crate::common::{project, run, scenario, shared};
 use crate::program::Bench;
 
-const CELL: &str = r#"schema = 1
+pub const CELL: &str = r#"schema = 1
 kind = "recorded_cell"
 title = "A cell of which there are recordings"
 
@@ -61,14 +61,14 @@ const NOISE: [f64; 4] = [2e-6, 400.0, 4e-5, 0.8];
 const RATE: f64 = 250.0;
 
 /// One program: lean, feed, pressure.
-struct Program {
-    name: &'static str,
+pub struct Program {
+    pub name: &'static str,
     lean: f64,
     feed: f64,
     pressure: f64,
 }
 
-const PROGRAMS: [Program; 3] = [
+pub const PROGRAMS: [Program; 3] = [
     Program {
         name: "a",
         lean: 0.0,
@@ -90,10 +90,10 @@ const PROGRAMS: [Program; 3] = [
 ];
 
 /// Times, places along the edge, angles of the joints, set pressures.
-struct Commands {
-    time: Vec<f64>,
+pub struct Commands {
+    pub time: Vec<f64>,
     path: Vec<f64>,
-    joints: Vec<Vec<f64>>,
+    pub joints: Vec<Vec<f64>>,
     set_pressure: Vec<f64>,
 }
 
@@ -145,13 +145,12 @@ fn commands(program: &Program) -> Commands {
     made
 }
 
-/// Records a program with physics planted in the cell.
-fn record(
+/// Commands of a program, and what they are to a cell with physics planted in it.
+pub fn inputs(
     cell: &LoadedCell,
     plant: &PlantParameters,
     program: &Program,
-    folder: &Path,
-) -> Vec<Vec<f64>> {
+) -> (Commands, PlantInputs) {
     let made = commands(program);
     let bandwidth = plant.cell.servo_bandwidth;
     let trajectory = cell.trajectory(&made.time, &made.path, &made.joints, bandwidth);
@@ -165,6 +164,18 @@ fn record(
         initial: InitialState::AtRest,
         place: 0,
     };
+    (made, inputs)
+}
+
+/// Records a program with physics planted in the cell.
+pub fn record(
+    cell: &LoadedCell,
+    plant: &PlantParameters,
+    program: &Program,
+    folder: &Path,
+) -> Vec<Vec<f64>> {
+    let (made, inputs) = inputs(cell, plant, program);
+    let bandwidth = plant.cell.servo_bandwidth;
     let readings = simulate(plant, &inputs).readings;
     let mut random =
         ChaCha8Rng::seed_from_u64(7 + program.name.len() as u64 + (program.feed * 1e3) as u64);
