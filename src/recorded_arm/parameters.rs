@@ -120,8 +120,6 @@ pub struct ArmParameters {
     pub load: PointMass,
     /// Load that is not declared.
     pub payload: PointMass,
-    /// The one of the recordings in which the flange carries it; all where none is named.
-    pub payload_recording: Option<usize>,
     /// Wrench sensor between flange and tool.
     pub wrench: Option<WrenchSensor>,
     /// How late currents and torques are stamped [s].
@@ -148,17 +146,13 @@ impl ArmParameters {
         (DQuat::from_rotation_y(pitch) * DQuat::from_rotation_x(roll)).inverse() * self.gravity
     }
 
-    /// The chain with all that its last link carries in a recording.
+    /// The chain with all that its last link carries.
     #[must_use]
-    pub fn loaded_chain(&self, recording: usize) -> KinematicChain {
-        let payload = match self.payload_recording {
-            Some(own) if own != recording => PointMass::default(),
-            _ => self.payload,
-        };
+    pub fn loaded_chain(&self) -> KinematicChain {
         let mut chain = self.chain.clone();
         let tip = chain.tip_from_last;
         if let Some(last) = chain.joints.last_mut() {
-            for body in [self.load.body(), payload.body()] {
+            for body in [self.load.body(), self.payload.body()] {
                 last.body = last.body.welded_to(&body.seen_from(&tip));
             }
             if let Some(wrench) = &self.wrench {
@@ -184,7 +178,6 @@ impl ArmParameters {
             && self.chain == other.chain
             && self.load == other.load
             && self.payload == other.payload
-            && self.payload_recording == other.payload_recording
             && tool(self) == tool(other)
             && self
                 .drives

@@ -37,8 +37,6 @@ pub struct RigidCourse {
     links: Arc<Vec<LinkState>>,
     /// The chain with its loads.
     chain: KinematicChain,
-    /// Which of the recordings it is of.
-    recording: usize,
 }
 
 impl RigidCourse {
@@ -46,7 +44,7 @@ impl RigidCourse {
     #[must_use]
     pub fn of(arm: &ArmParameters, motion: &Motion) -> Self {
         let joints = arm.joints();
-        let chain = arm.loaded_chain(motion.recording);
+        let chain = arm.loaded_chain();
         let gravity = arm.true_gravity();
         let mut carried = vec![Vec::with_capacity(motion.len()); joints];
         let mut flange = Vec::new();
@@ -90,7 +88,6 @@ impl RigidCourse {
             flange: Arc::new(flange),
             links: Arc::new(links),
             chain,
-            recording: motion.recording,
         }
     }
 
@@ -98,7 +95,7 @@ impl RigidCourse {
     #[must_use]
     pub fn with_bodies_of(&self, arm: &ArmParameters) -> Self {
         let joints = arm.joints();
-        let chain = arm.loaded_chain(self.recording);
+        let chain = arm.loaded_chain();
         let mut carried = self.carried.clone();
         for place in 0..joints {
             let bodies = [&self.chain.joints[place].body, &chain.joints[place].body];
@@ -118,7 +115,6 @@ impl RigidCourse {
             flange: Arc::clone(&self.flange),
             links: Arc::clone(&self.links),
             chain,
-            recording: self.recording,
         }
     }
 }

@@ -71,8 +71,6 @@ pub struct Candidate {
     pub free: Vec<Parameter>,
     /// Those of the free ones that a screening moves: readings depend on them nearly linearly.
     pub screened: Vec<Quantity>,
-    /// The recording in which alone the flange carries a payload.
-    pub payload_in: Option<usize>,
     /// A push that is added.
     pub push: Option<Push>,
     /// A law that is added.
@@ -124,7 +122,6 @@ impl Candidate {
             presets: Vec::new(),
             free: parameters.collect(),
             screened: free.iter().map(|(q, _)| *q).collect(),
-            payload_in: None,
             push: None,
             law: None,
         }
@@ -156,9 +153,6 @@ impl Candidate {
             Quantity::LawWidth(_) => Quantity::LawWidth(laws),
             other => other,
         };
-        if self.payload_in.is_some() {
-            arm.payload_recording = self.payload_in;
-        }
         arm.pushes.extend(self.push);
         arm.laws.extend(self.law);
         for (quantity, value) in &self.presets {
@@ -320,13 +314,6 @@ fn of_load_and_mount(input: &ArmInput, all: &mut Vec<Candidate>) {
     // From a mass on that has a centre.
     let begun = [(Q::PayloadMass, 0.1)];
     all.push(Candidate::linear(ArmEffect::Payload, &payload).from(&begun));
-    if input.recordings.len() > 1 {
-        let of = |recording| Candidate {
-            payload_in: Some(recording),
-            ..Candidate::linear(ArmEffect::Payload, &payload).from(&begun)
-        };
-        all.extend((0..input.recordings.len()).map(of));
-    }
     for link in 0..input.nominal.joints() {
         let mass = input.nominal.chain.joints[link].body.mass;
         if mass > 0.0 {

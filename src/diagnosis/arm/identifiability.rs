@@ -268,7 +268,6 @@ pub(super) mod tests {
                 drives: vec![drive; 2],
                 load: PointMass::default(),
                 payload: PointMass::default(),
-                payload_recording: None,
                 wrench: None,
                 delay: 0.0,
                 pushes: Vec::new(),

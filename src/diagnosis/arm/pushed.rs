@@ -104,7 +104,6 @@ pub fn candidate(push: Push) -> Candidate {
         presets: Vec::new(),
         free: forces.into_iter().chain(times).collect(),
         screened: forces.iter().map(|p| p.quantity).collect(),
-        payload_in: None,
         push: Some(Push {
             force: DVec3::ZERO,
             ..push

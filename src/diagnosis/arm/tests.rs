@@ -47,7 +47,6 @@ fn nominal() -> ArmParameters {
         drives: vec![drive; JOINTS],
         load: PointMass::default(),
         payload: PointMass::default(),
-        payload_recording: None,
         wrench: None,
         delay: 0.0,
         pushes: Vec::new(),

@@ -97,7 +97,6 @@ pub(super) fn chain(
         drives,
         load: PointMass::default(),
         payload: PointMass::default(),
-        payload_recording: None,
         wrench: None,
         delay: 0.0,
         pushes: Vec::new(),
