@@ -69,7 +69,9 @@ fn leave_out_truths(columns: &mut Vec<(String, Vec<f64>)>) {
     let names: Vec<String> = columns.iter().map(|(name, _)| name.clone()).collect();
     columns.retain(|(name, _)| {
         let is_read = |(truth, read): &(&str, &str)| {
-            let joint = name.strip_suffix(truth).filter(|joint| joint.ends_with('_'));
+            let joint = name
+                .strip_suffix(truth)
+                .filter(|joint| joint.ends_with('_'));
             joint.is_some_and(|joint| {
                 !name.ends_with(read) && names.contains(&format!("{joint}{read}"))
             })

@@ -29,7 +29,7 @@ use crate::scenario::arm_file::{ArmFile, from_text, improved_arm_text};
 /// Samples per second that tell all of an arm's drives [Hz]. Where there are more, those between are left out: averaged, friction would turn more slowly than it
 /// does.
 const RATE: f64 = 150.0;
-/// Time before and after a blow in which an arm swings as no rigid model of it does [s].
+/// Time before and after a blow in which an arm swings as no rigid model of it does, and beside a rest of a tool that touches [s].
 const STRUCK: f64 = 0.05;
 /// How far the point of a contact may lie beside the device's axis and its nominal place [m].
 const BESIDE: f64 = 1e-3;
@@ -287,8 +287,12 @@ impl Flange<'_> {
 /// Whether it is known what the part and the slide do to the flange, by sample; force of the contact [N], and that which accelerates the slide.
 fn is_known(trajectory: &ArmTrajectory, force: &[f64], slide: &[f64]) -> Vec<bool> {
     let held = |i: usize| force[i] > TOUCHES && trajectory.rests(i);
-    let mut known: Vec<bool> = (0..force.len()).map(|i| !held(i)).collect();
+    let mut known = vec![true; force.len()];
     let around = (STRUCK / sample_time(&trajectory.time)).round() as usize;
+    for i in (0..force.len()).filter(|i| held(*i)) {
+        // As it breaks loose, friction grows to that of a sliding tool from what held it.
+        known[i.saturating_sub(around)..(i + around).min(force.len())].fill(false);
+    }
     let second = |values: &[f64], i: usize| values[i + 1] - 2.0 * values[i] + values[i - 1];
     for i in 1..force.len().saturating_sub(1) {
         if second(force, i).abs().max(second(slide, i).abs()) > BLOW {

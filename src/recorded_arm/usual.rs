@@ -48,7 +48,12 @@ fn of_wrench(effect: &ArmEffectName, arm: &ArmParameters) -> Vec<f64> {
     match effect.name {
         "wrench_zero" => {
             let moved = [6.0, -4.0, 8.0, 0.3, 0.2, -0.1];
-            sensor.zero.iter().zip(moved).map(|(z, by)| z + by).collect()
+            sensor
+                .zero
+                .iter()
+                .zip(moved)
+                .map(|(z, by)| z + by)
+                .collect()
         }
         "tool_weight_error" => {
             let centre = sensor.tool_centre;

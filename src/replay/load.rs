@@ -2,7 +2,9 @@
 
 use crate::arm::chain::{JointKind, KinematicChain};
 use crate::arm::load_arm;
-use crate::cell::{CellError, arm_options, check_recorded_arm, choose_edge, complete, station, with_housing};
+use crate::cell::{
+    CellError, arm_options, check_recorded_arm, choose_edge, complete, station, with_housing,
+};
 use crate::plant::{EdgeStation, PlantParameters, SharpEdge};
 use crate::scenario::{RecordedCell, load_recorded_cell};
 use crate::workpiece::{EdgeCurve, load_mesh};

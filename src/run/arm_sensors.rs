@@ -79,7 +79,11 @@ fn quantity_of(arm: &ArmParameters, channel: Channel) -> (String, Unit) {
             (drive_quantity(joint + 1, reading), reading.unit())
         }
         Channel::Wrench(k) => {
-            let unit = if k < 3 { Unit::Newton } else { Unit::NewtonMetre };
+            let unit = if k < 3 {
+                Unit::Newton
+            } else {
+                Unit::NewtonMetre
+            };
             (wrench_quantity(CHANNELS[k]), unit)
         }
     }

@@ -6,9 +6,9 @@ use glam::{DQuat, DVec3};
 use glamx::DPose3;
 use serde::Deserialize;
 
+use super::arm_file::ArmFile;
 use super::assumed::AssumedValue;
 use super::controller::ControllerScenario;
-use super::arm_file::ArmFile;
 use crate::effects::PresentEffect;
 use crate::keys::declaration::{Below, Filled, keys};
 use crate::keys::schema::type_schema;

@@ -147,7 +147,10 @@ impl EffectRequest {
 
     fn no_number(&self, key: &str, names: &[&str]) -> String {
         let all = names.join(", ");
-        format!("{} has no number `{key}`, expected some of {all}", self.name)
+        format!(
+            "{} has no number `{key}`, expected some of {all}",
+            self.name
+        )
     }
 
     /// The scenario's keys, what is not given at its usual size beside the nominal values, of the most observable joint where it does not say which.

@@ -8,13 +8,13 @@ use std::path::PathBuf;
 use glam::DVec3;
 use serde::Deserialize;
 
+use super::arm_file::EffectTables;
 use super::cell::{
     ContactKeys, DriveScenario, LimitOverride, Misplacement, ProcessScenario, ServoScenario,
     SimulationScenario,
 };
 use super::controller::ControllerKeys;
 use super::device::ModelKeys;
-use super::arm_file::EffectTables;
 use super::effects::EffectKeys;
 use super::sensing::keys::SensingKeys;
 use crate::keys::declaration::{Plain, keys};
