@@ -170,6 +170,13 @@ fn the_gallery_is_what_the_program_makes() {
         assert!(size < 25_000, "{file}: {size} bytes");
         pictures.insert(format!("{}.svg", name(effect)));
     }
+    for effect in idc_cell::demonstration::arm_effects() {
+        let file = format!("docs/pictures/effects/{}.svg", effect.name);
+        assert!(same(&file), "{file} {again}");
+        let size = read(project(&file)).len();
+        assert!(size < 25_000, "{file}: {size} bytes");
+        pictures.insert(format!("{}.svg", effect.name));
+    }
     let existing: BTreeSet<String> = std::fs::read_dir(project("docs/pictures/effects"))
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())

@@ -2,6 +2,7 @@
 
 mod advice;
 mod air;
+mod arm_in_cell;
 mod arm_logs;
 mod bad_input;
 mod balance;

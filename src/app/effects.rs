@@ -1,5 +1,6 @@
 //! `idc effects`: what physics there is that a model may lack, described and drawn.
 
+mod arm_page;
 mod gallery;
 mod page;
 mod picture;
@@ -11,13 +12,15 @@ use clap::Args;
 use super::error::{AppError, ExitCode};
 use super::files::{OverwritePolicy, prepare_file};
 use super::output::say;
-use crate::demonstration::{self as scene, Stage};
-use crate::document::{Style, text};
+use crate::demonstration::{self as scene, ArmStage, Stage, arm_effects};
+use crate::document::{Document, Style, text};
 use crate::effects::{Effect, NUMBER_OFF, NUMBERS_OFF, kinds};
 use crate::keys::suggestion::nearest;
+use crate::recorded_arm::vocabulary::ArmEffectName;
 use crate::recording::atomic::write_text;
+use arm_page::ArmExplained;
 use page::{Explained, by_subsystem, list};
-use picture::picture;
+use picture::{picture, picture_of_arm};
 
 /// For the help.
 pub(super) const EXAMPLES: &str = "\
@@ -90,6 +93,9 @@ pub(super) fn run(arguments: &EffectsArguments) -> Result<ExitCode, AppError> {
         }
         return Ok(ExitCode::Done);
     }
+    if let Some(effect) = arm_effects().find(|effect| effect.name == name) {
+        return of_arm(arguments, effect, policy);
+    }
     let effect = named(name)?;
     let stage = Stage::new(&scene::of(effect).scene)?;
     if let Some(file) = &arguments.out {
@@ -97,13 +103,40 @@ pub(super) fn run(arguments: &EffectsArguments) -> Result<ExitCode, AppError> {
         write_text(file, &picture(effect, &stage)?.svg)?;
     }
     let explained = Explained::new(effect, &stage);
+    let json = serde_json::to_string_pretty(&explained)?;
+    explain(arguments, name, &json, &explained.document(page::PICTURES))
+}
+
+/// The same of an effect of an arm file.
+fn of_arm(
+    arguments: &EffectsArguments,
+    effect: &'static ArmEffectName,
+    policy: OverwritePolicy,
+) -> Result<ExitCode, AppError> {
+    let stage = ArmStage::new()?;
+    let explained = ArmExplained::new(effect, &stage, page::PICTURES)?;
+    if let Some(file) = &arguments.out {
+        prepare_file(file, "--out", policy)?;
+        let drawn = picture_of_arm(effect, &stage, explained.title())?;
+        write_text(file, &drawn.svg)?;
+    }
+    let json = serde_json::to_string_pretty(&explained)?;
+    explain(arguments, effect.name, &json, &explained.document())
+}
+
+/// Says what an effect is.
+fn explain(
+    arguments: &EffectsArguments,
+    name: &str,
+    json: &str,
+    page: &Document<'_>,
+) -> Result<ExitCode, AppError> {
     if arguments.json {
-        say(&format!("{}\n", serde_json::to_string_pretty(&explained)?))?;
+        say(&format!("{json}\n"))?;
     } else if let (Some(file), false) = (&arguments.out, arguments.quiet) {
         say(&format!("written to {}\n", file.display()))?;
     } else if !arguments.quiet {
-        let page = explained.document(page::PICTURES);
-        say(&text(&page, Style::Plain))?;
+        say(&text(page, Style::Plain))?;
         say(&format!(
             "  idc effects {name} --out FILE.svg draws it anew\n"
         ))?;
@@ -112,7 +145,11 @@ pub(super) fn run(arguments: &EffectsArguments) -> Result<ExitCode, AppError> {
 }
 
 fn named(name: &str) -> Result<&'static Effect, AppError> {
-    let known: Vec<&str> = kinds().map(|effect| effect.vocabulary().0).collect();
+    let of_arm = arm_effects().map(|effect| effect.name);
+    let known: Vec<&str> = kinds()
+        .map(|effect| effect.vocabulary().0)
+        .chain(of_arm)
+        .collect();
     let effect = kinds().find(|effect| effect.vocabulary().0 == name);
     effect.ok_or_else(|| AppError::NoEffect {
         name: name.to_owned(),
@@ -157,5 +194,15 @@ fn listed() -> serde_json::Value {
         })
     };
     let effects = by_subsystem().flat_map(|(_, effects)| effects);
-    serde_json::json!({ "effects": effects.map(entry).collect::<Vec<_>>() })
+    let of_arm = arm_effects().map(|effect| {
+        serde_json::json!({
+            "name": effect.name,
+            "subsystem": effect.subsystem,
+            "meaning": effect.meaning,
+        })
+    });
+    serde_json::json!({
+        "effects": effects.map(entry).collect::<Vec<_>>(),
+        "effects_of_arm_files": of_arm.collect::<Vec<_>>(),
+    })
 }

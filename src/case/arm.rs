@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::arm_recording::{ArmLog, column_of, noise_of, read};
+use super::arm_recording::{ArmLog, column_of, read};
 use super::diagnosed::{DRIVES, Diagnosed, IDENTIFIED, IMPROVED};
 use super::error::CaseError;
 use super::rig::names_to_fit;
@@ -76,7 +76,7 @@ impl ArmCase {
             numbers: file.numbers.clone(),
             tolerated: file.tolerated.clone(),
             noise: (channels.iter())
-                .filter_map(|(channel, _)| noise_of(&file, *channel))
+                .filter_map(|(channel, _)| file.noise.of(*channel))
                 .collect(),
             recordings: recordings
                 .map(|(index, log)| log.recording(index, &only(&channels)))
@@ -273,7 +273,7 @@ pub(super) fn channels(
     let mut found: Vec<(Channel, String)> = Vec::new();
     for (channel, column, values) in logs.iter().flat_map(|log| &log.channels) {
         let is_new = found.iter().all(|(own, _)| own != channel);
-        let is_known = noise_of(file, *channel).is_some();
+        let is_known = file.noise.of(*channel).is_some();
         if is_new && is_known && values.iter().any(|value| value.is_finite()) {
             found.push((*channel, column.clone()));
         }
@@ -439,7 +439,7 @@ pub fn unrecorded(file: &ArmFile) -> ArmInput {
     let wrench = (0..WRENCH.len()).map(Channel::Wrench);
     let wrench = wrench.filter(|_| file.nominal.wrench.is_some());
     let all = drives.chain(links).chain(wrench);
-    let known = all.filter_map(|channel| Some((channel, noise_of(file, channel)?)));
+    let known = all.filter_map(|channel| Some((channel, file.noise.of(channel)?)));
     let (channels, noise): (Vec<Channel>, Vec<f64>) = known.unzip();
     ArmInput {
         nominal: file.arm(&[]),

@@ -11,6 +11,7 @@ use crate::recorded_arm::wrench::CHANNELS as WRENCH;
 use crate::recording::RecordingError;
 use crate::recording::csv::Log;
 use crate::recording::log::read_log;
+use crate::recording::samples::rows;
 use crate::recording::schema::plain_joint;
 use crate::scenario::arm_file::ArmFile;
 
@@ -49,12 +50,35 @@ const SIGNALS: [(&str, Signal); 11] = [
     ("m", Signal::Position),
 ];
 /// Ends as an import writes them, and the usual ones.
-const IMPORTED: [(&str, &str); 4] = [
+const IMPORTED: [(&str, &str); 5] = [
+    ("drive_torque_n_m", "torque_n_m"),
     ("encoder_rad", "rad"),
     ("position_rad", "rad"),
     ("reference_rad", "command_rad"),
     ("velocity_rad_per_s", "rad_per_s"),
 ];
+
+/// Ends of columns of a run that say how something is, beside those that say how a sensor reads it.
+const TRUTHS: [(&str, &str); 2] = [
+    ("position_rad", "encoder_rad"),
+    ("torque_n_m", "drive_torque_n_m"),
+];
+
+/// Leaves out what no sensor read where a sensor read the same.
+fn leave_out_truths(columns: &mut Vec<(String, Vec<f64>)>) {
+    let names: Vec<String> = columns.iter().map(|(name, _)| name.clone()).collect();
+    columns.retain(|(name, _)| {
+        let is_read = |(truth, read): &(&str, &str)| {
+            let joint = name
+                .strip_suffix(truth)
+                .filter(|joint| joint.ends_with('_'));
+            joint.is_some_and(|joint| {
+                !name.ends_with(read) && names.contains(&format!("{joint}{read}"))
+            })
+        };
+        !TRUTHS.iter().any(is_read)
+    });
+}
 
 /// The joint of a column, by its number or by its name among `joints`, and the column's usual end.
 fn joint_and_end<'a>(
@@ -126,16 +150,6 @@ pub(super) fn column_of(arm: &ArmFile, channel: Channel) -> String {
     }
 }
 
-/// Noise of a channel by the file; none where it has no such sensor.
-pub(super) fn noise_of(arm: &ArmFile, channel: Channel) -> Option<f64> {
-    match channel {
-        Channel::Drive(joint) => arm.noise.drives[joint],
-        Channel::Link(_) => arm.noise.link,
-        Channel::Wrench(0..=2) => arm.noise.force,
-        Channel::Wrench(_) => arm.noise.moment,
-    }
-}
-
 /// A log with its columns sorted.
 pub(super) struct ArmLog {
     /// Its file.
@@ -161,6 +175,7 @@ pub(super) fn read_log_of(arm: &ArmFile, path: &Path, name: &str) -> Result<ArmL
     let of_wrench = |column: &str| wrench.iter().position(|own| own == column);
     let wanted = |column: &str| joint_signal(arm, column).is_some() || of_wrench(column).is_some();
     let mut log = read_log(&path, wanted)?;
+    leave_out_truths(&mut log.columns);
     let count = arm.numbers.len();
     let mut positions = vec![None; count];
     let mut channels = Vec::new();
@@ -395,6 +410,17 @@ impl ArmLog {
             }
         }
         both
+    }
+
+    /// The rows at which sensors that are read so often [Hz] were read; between them a run repeats readings.
+    pub fn read_at(mut self, rate: f64) -> Self {
+        let rows = rows(&self.log.time, rate);
+        let taken = |values: &mut Vec<f64>| *values = rows.iter().map(|r| values[*r]).collect();
+        let channels = self.channels.iter_mut().map(|(_, _, values)| values);
+        (self.positions.iter_mut().chain(channels)).for_each(taken);
+        self.log.time = rows.iter().map(|row| self.log.time[*row]).collect();
+        self.log.lines = rows.iter().map(|row| self.log.lines[*row]).collect();
+        self
     }
 
     /// Its name.

@@ -78,17 +78,21 @@ fn recordings(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
+/// Whether a file holds the samples of a run.
+pub(super) fn is_run(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| name == SAMPLES)
+}
+
 /// Name of a recording: its file's, of a run its folder's.
 fn name_of(path: &Path) -> String {
-    let run = path.file_name().is_some_and(|name| name == SAMPLES);
-    let named = if run { path.parent() } else { None };
+    let named = if is_run(path) { path.parent() } else { None };
     let name = named.unwrap_or(path).file_name().unwrap_or_default();
     name.display().to_string()
 }
 
 fn read_one(cell: &LoadedCell, path: &Path) -> Result<CellRecording, CaseError> {
     let joints = cell.joints.len();
-    if path.file_name().is_none_or(|name| name != SAMPLES) {
+    if !is_run(path) {
         return Ok(read_cell_csv(path, joints)?);
     }
     let scenario = &cell.scenario;

@@ -5,15 +5,11 @@
 
 use std::path::Path;
 
-use glam::{DQuat, DVec3};
-
 use super::arm::{channels, check_currents, misfit, predicted};
-use super::arm_recording::{ArmLog, noise_of, read_log_of};
+use super::arm_recording::{ArmLog, read_log_of};
+use super::cell::is_run;
 use super::diagnosed::{DRIVES, Diagnosed, IDENTIFIED, IMPROVED_ARM};
 use super::error::CaseError;
-use crate::arm::chain::MAX_JOINTS;
-use crate::arm::dynamics::{LinkState, link_states};
-use crate::arm::kinematics::tip_pose;
 use crate::diagnosis::answer::details::ChannelNoise;
 use crate::diagnosis::answer::{Answer, Extent, Verdict};
 use crate::diagnosis::arm::drives::drives_text;
@@ -21,18 +17,19 @@ use crate::diagnosis::arm::input::{ArmInput, ArmRecording};
 use crate::diagnosis::arm::{ArmDiagnosis, diagnose};
 use crate::diagnosis::difference::comparison::{Compared, ComparedChannel, Comparison};
 use crate::plant::{ArmTrajectory, PlantInputs, PlantParameters, simulate};
+use crate::recorded_arm::carrier::Carrier;
 use crate::recorded_arm::motion::{Motion, every, sample_time};
 use crate::recorded_arm::outside::{Outside, OutsideWrench};
 use crate::recorded_arm::simulate::Channel;
 use crate::recorded_arm::sliding_mass::SlidingMass;
 use crate::recorded_arm::{ArmParameters, Quantity, Tolerated};
 use crate::replay::{LoadedCell, ToolContact};
-use crate::scenario::arm_file::{ArmFile, from_text, improved_arm_text, load_arm_file};
+use crate::scenario::arm_file::{ArmFile, from_text, improved_arm_text};
 
 /// Samples per second that tell all of an arm's drives [Hz]. Where there are more, those between are left out: averaged, friction would turn more slowly than it
 /// does.
 const RATE: f64 = 150.0;
-/// Time before and after a blow in which an arm swings as no rigid model of it does [s].
+/// Time before and after a blow in which an arm swings as no rigid model of it does, and beside a rest of a tool that touches [s].
 const STRUCK: f64 = 0.05;
 /// How far the point of a contact may lie beside the device's axis and its nominal place [m].
 const BESIDE: f64 = 1e-3;
@@ -60,20 +57,15 @@ impl CellDrives {
         known: &[(&str, &Path)],
         unseen: Option<(&str, &Path)>,
     ) -> Result<Option<Self>, CaseError> {
-        let Some(path) = &cell.scenario.arm.recorded_arm else {
+        let Some(file) = cell.scenario.arm.recorded_arm.as_deref() else {
             return Ok(None);
         };
-        let file = load_arm_file(path)?;
-        let joints = file.nominal.chain.joints.iter().map(|j| j.name.as_str());
-        let own: Vec<&str> = joints.collect();
-        if own != cell.joints.iter().map(String::as_str).collect::<Vec<_>>() {
-            return Err(CaseError::OtherJoints {
-                file: path.display().to_string(),
-                found: own.join(", "),
-                expected: cell.joints.join(", "),
-            });
-        }
-        let log = |(name, path): &(&str, &Path)| read_log_of(&file, path, name);
+        let file = file.clone();
+        let rate = cell.scenario.sample_rate;
+        let log = |(name, path): &(&str, &Path)| {
+            let log = read_log_of(&file, path, name)?;
+            Ok::<_, CaseError>(if is_run(path) { log.read_at(rate) } else { log })
+        };
         let logs: Vec<ArmLog> = known.iter().map(log).collect::<Result<_, _>>()?;
         let unseen = unseen.as_ref().map(log).transpose()?;
         let measured = channels(&file, &logs);
@@ -82,7 +74,7 @@ impl CellDrives {
                 file: known
                     .first()
                     .map_or_else(String::new, |(_, path)| path.display().to_string()),
-                arm: path.display().to_string(),
+                arm: file.path.display().to_string(),
             });
         };
         let (channels, columns) = measured.into_iter().unzip();
@@ -104,10 +96,17 @@ impl CellDrives {
         Ok(Some(read))
     }
 
+    /// The nominal arm, with what the scenario says of each recording.
+    fn nominal(&self) -> ArmParameters {
+        let names = self.known.iter().chain(&self.unseen);
+        let names: Vec<String> = names.map(|log| log.name().to_owned()).collect();
+        self.file.arm(&names)
+    }
+
     fn input(&self, recordings: Vec<ArmRecording>) -> ArmInput {
         let noise = self.channels.iter();
         ArmInput {
-            nominal: self.file.arm(&[]),
+            nominal: self.nominal(),
             links: self.file.links.clone(),
             numbers: self.file.numbers.clone(),
             tolerated: self
@@ -117,7 +116,7 @@ impl CellDrives {
                 .copied()
                 .chain(of_contact())
                 .collect(),
-            noise: noise.filter_map(|c| noise_of(&self.file, *c)).collect(),
+            noise: noise.filter_map(|c| self.file.noise.of(*c)).collect(),
             channels: self.channels.clone(),
             columns: self.columns.clone(),
             recordings,
@@ -131,7 +130,7 @@ impl CellDrives {
         cell: &LoadedCell,
         (plant, known, unseen): (&PlantParameters, &[&PlantInputs], Option<&PlantInputs>),
     ) -> Result<(), CaseError> {
-        let mut nominal = self.file.arm(&[]);
+        let mut nominal = self.nominal();
         for (drive, offset) in nominal.drives.iter_mut().zip(plant.cell.encoder_offset) {
             drive.encoder_offset = offset;
         }
@@ -267,35 +266,33 @@ impl Flange<'_> {
         let of = |all: &[Vec<f64>]| all.iter().map(|own| own[i]).collect::<Vec<f64>>();
         let [q, qd, qdd] =
             [&motion.position, &motion.speed, &motion.acceleration].map(|all| of(all));
-        let base = self.cell.scenario.arm.world_from_base;
-        let [slides, own] =
-            [&self.cell.chain, &self.nominal.chain].map(|chain| tip_pose(chain, base, &q));
         let mounting = &self.cell.scenario.nominal.mounting;
-        let centre = slides.transform_point(DVec3::Z * (mounting.tool_centre + slide[0]));
-        let point = own.inverse().transform_point(centre + contact.from_centre);
-        let [pressed, drag] = [contact.force, contact.drag]
-            .map(|force| OutsideWrench::at(point, own.rotation.inverse() * force));
-        let mut links = [LinkState::AT_REST; MAX_JOINTS];
-        let chain = &self.nominal.chain;
-        let gravity = self.nominal.true_gravity();
-        link_states(chain, DQuat::IDENTITY, gravity, [&q, &qd, &qdd], &mut links);
-        let last = links[q.len() - 1]
-            .motion()
-            .of_fixed(&self.cell.chain.tip_from_last);
-        let mass = SlidingMass {
-            mass: self.plant.device.moving_mass,
-            centre: mounting.moving_centre_of_mass,
+        let carrier = Carrier {
+            arm: self.nominal,
+            mount: &self.cell.chain,
+            world_from_base: self.cell.scenario.arm.world_from_base,
+            slide: SlidingMass {
+                mass: self.plant.device.moving_mass,
+                centre: mounting.moving_centre_of_mass,
+            },
         };
-        let sliding = mass.beyond_retracted(&last, slide);
-        (pressed + sliding.seen_from(&(own.inverse() * slides)), drag)
+        let centre = carrier.on_axis(&q, mounting.tool_centre + slide[0]);
+        let point = centre + contact.from_centre;
+        let [pressed, drag] =
+            [contact.force, contact.drag].map(|force| carrier.pressed(&q, point, force));
+        (pressed + carrier.sliding([&q, &qd, &qdd], slide), drag)
     }
 }
 
 /// Whether it is known what the part and the slide do to the flange, by sample; force of the contact [N], and that which accelerates the slide.
 fn is_known(trajectory: &ArmTrajectory, force: &[f64], slide: &[f64]) -> Vec<bool> {
     let held = |i: usize| force[i] > TOUCHES && trajectory.rests(i);
-    let mut known: Vec<bool> = (0..force.len()).map(|i| !held(i)).collect();
+    let mut known = vec![true; force.len()];
     let around = (STRUCK / sample_time(&trajectory.time)).round() as usize;
+    for i in (0..force.len()).filter(|i| held(*i)) {
+        // As it breaks loose, friction grows to that of a sliding tool from what held it.
+        known[i.saturating_sub(around)..(i + around).min(force.len())].fill(false);
+    }
     let second = |values: &[f64], i: usize| values[i + 1] - 2.0 * values[i] + values[i - 1];
     for i in 1..force.len().saturating_sub(1) {
         if second(force, i).abs().max(second(slide, i).abs()) > BLOW {

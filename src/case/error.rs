@@ -63,18 +63,6 @@ pub enum CaseError {
         /// Least number.
         least: usize,
     },
-    /// An arm file of another arm than the cell's.
-    #[error(
-        "{file}: its drives are of the joints {found}, expected {expected}, those of the cell's arm, base first: name the arm file of this arm in `arm.recorded_arm`"
-    )]
-    OtherJoints {
-        /// The arm file.
-        file: String,
-        /// Its joints.
-        found: String,
-        /// Those of the cell.
-        expected: String,
-    },
     /// A cell with an arm file, and recordings without anything of its drives.
     #[error(
         "{file}: no column of a drive's current or torque or of a wrench, expected at least one, as {arm} describes the arm's drives and sensor: log them, or leave `arm.recorded_arm` out"

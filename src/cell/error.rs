@@ -41,6 +41,18 @@ pub enum CellError {
         /// The joint.
         joint: String,
     },
+    /// An arm file of another arm than the cell's, or with its drives in another order.
+    #[error(
+        "{}: its drives are of the joints {found}, expected {expected}, those of the cell's arm, base first: name the arm file of this arm in `arm.recorded_arm`, with its [[drive]] in this order", file.display()
+    )]
+    OtherDrives {
+        /// The arm file.
+        file: PathBuf,
+        /// Its joints, in the order of its drives.
+        found: String,
+        /// Those of the cell.
+        expected: String,
+    },
     /// The chosen edge is not there.
     #[error("{}: `workpiece.edge` is {chosen}, which does not exist; the part has edges 0 to {} and loops 0 to {} (list them with `idc edges {}`)",
         file.display(), *edges as isize - 1, *loops as isize - 1, word(mesh))]

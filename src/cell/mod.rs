@@ -9,6 +9,7 @@ mod estimated;
 mod part;
 mod payload;
 mod plant;
+mod recorded_arm;
 mod resolution;
 mod setup;
 mod stroke;
@@ -27,6 +28,7 @@ pub use estimated::{EstimatedArm, EstimatedLink, EstimatedTorque};
 pub use part::{Part, choose_edge, station};
 pub use payload::{FlangeLoad, with_housing};
 pub use plant::complete;
+pub use recorded_arm::check as check_recorded_arm;
 pub use resolution::Resolution;
 pub use setup::{Setup, Stance, arm_options};
 

@@ -8,6 +8,7 @@ use super::error::CellError;
 use super::part::Part;
 use super::payload::{FlangeLoad, with_housing};
 use super::plant;
+use super::recorded_arm;
 use super::supply;
 use crate::arm::chain::{BodyInertia, Joint, JointKind, KinematicChain};
 use crate::arm::urdf::{Arm, ArmOptions, LimitOverride, load_arm};
@@ -57,6 +58,7 @@ impl Setup {
     pub fn load(mut scenario: Scenario) -> Result<Self, CellError> {
         let mut arm = load_arm(&scenario.arm.urdf, &arm_options(&scenario.arm))?;
         check_drives(&scenario, &arm.chain)?;
+        recorded_arm::check(&scenario.arm, &arm.chain)?;
         plant::complete(&mut scenario.nominal, &scenario.arm, &arm.chain);
         let actual = actual(&scenario.nominal, &scenario.effects);
         plant::check(&scenario, &arm.chain, &actual)?;
@@ -78,6 +80,7 @@ impl Setup {
                 .map(|note| format!("{mesh}: {note}")),
         );
         notes.extend(flange.notes());
+        notes.extend(recorded_arm::note(&scenario.arm));
         let collision = collision::model(&scenario, &arm, &arm_with_slide, &part, &mut notes)?;
         Ok(Self {
             passes: passes(&scenario),

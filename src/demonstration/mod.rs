@@ -1,5 +1,9 @@
 //! Runs in which effects show: short scenarios that come with the program, and parts of a device driven by simple inputs.
 
+mod arm;
+
+pub use arm::{ArmStage, arm_effects};
+
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
@@ -262,17 +266,7 @@ impl Stage {
     }
 
     fn of_run(shipped: &Shipped) -> Result<Self, RunError> {
-        let folder =
-            tempfile::tempdir().map_err(|error| RecordingError::write(Path::new("."), error))?;
-        let scenario = (shipped.path, shipped.text.as_bytes());
-        for (path, content) in BESIDE.into_iter().chain([scenario]) {
-            let path = folder.path().join(path);
-            let written = path.parent().map_or(Ok(()), std::fs::create_dir_all);
-            written
-                .and_then(|()| std::fs::write(&path, content))
-                .map_err(|error| RecordingError::write(&path, error))?;
-        }
-        let path: PathBuf = folder.path().join(shipped.path);
+        let (folder, path) = put_down(shipped, &[])?;
         let template = ScenarioTemplate::read(&path)?;
         let (nominal, most_observable_joint) = nominal_of(&template)?;
         Ok(Self {
@@ -331,6 +325,26 @@ impl Stage {
             }
         }
     }
+}
+
+/// Writes a scenario and the files that it names into a folder.
+fn put_down(
+    shipped: &Shipped,
+    further: &[(&'static str, &'static [u8])],
+) -> Result<(tempfile::TempDir, PathBuf), RunError> {
+    let folder =
+        tempfile::tempdir().map_err(|error| RecordingError::write(Path::new("."), error))?;
+    let scenario = (shipped.path, shipped.text.as_bytes());
+    let files = BESIDE.into_iter().chain([scenario]);
+    for (path, content) in files.chain(further.iter().copied()) {
+        let path = folder.path().join(path);
+        let written = path.parent().map_or(Ok(()), std::fs::create_dir_all);
+        written
+            .and_then(|()| std::fs::write(&path, content))
+            .map_err(|error| RecordingError::write(&path, error))?;
+    }
+    let path = folder.path().join(shipped.path);
+    Ok((folder, path))
 }
 
 /// A signal of a recording: quantity, key, name, name on an axis, unit, and what a value in SI is multiplied by.

@@ -8,6 +8,7 @@
 //! flange, I inertia of motor and gear at the joint's side. One effect a file; of a prismatic joint read N for N m and m for rad.
 
 pub mod bristles;
+pub mod carrier;
 pub mod delay;
 pub mod drive;
 pub mod filter;
@@ -23,6 +24,7 @@ pub mod simulate;
 pub mod sliding_mass;
 pub mod spline;
 pub mod tolerated;
+pub mod usual;
 pub mod vocabulary;
 pub mod wrench;
 

@@ -95,6 +95,16 @@ impl Recording {
         })
     }
 
+    /// The same with further channels.
+    ///
+    /// # Errors
+    /// As of [`Self::new`].
+    pub fn with(mut self, channels: Vec<RecordedChannel>) -> Result<Self, RecordingError> {
+        self.channels.extend(channels);
+        check_channels(&self.channels, self.time.len())?;
+        Ok(self)
+    }
+
     /// Sample times [s].
     #[must_use]
     pub fn time(&self) -> &[f64] {

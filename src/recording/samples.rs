@@ -81,8 +81,9 @@ fn picked_times(time: &[f64], rows: &[usize]) -> Vec<f64> {
     rows.iter().map(|row| time[*row]).collect()
 }
 
-/// Rows at which the sensors were read: the nearest to each k/f.
-fn rows(time: &[f64], rate: f64) -> Vec<usize> {
+/// Rows at which sensors that are read f times a second [Hz] were read: the nearest to each k/f.
+#[must_use]
+pub fn rows(time: &[f64], rate: f64) -> Vec<usize> {
     if rate.is_infinite() {
         return (0..time.len()).collect();
     }

@@ -191,6 +191,65 @@ pub fn joint_quantity(joint: usize, signal: JointSignal) -> String {
     format!("joint_{joint}_{}", signal.name())
 }
 
+/// What an arm's drive reads.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DriveReading {
+    /// Current.
+    Current,
+    /// Torque; that of the simulated servo is [`JointSignal::Torque`].
+    Torque,
+}
+
+impl DriveReading {
+    const ALL: [Self; 2] = [Self::Current, Self::Torque];
+
+    /// The words behind the joint's number.
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Current => "current",
+            Self::Torque => "drive_torque",
+        }
+    }
+
+    /// Its unit.
+    #[must_use]
+    pub const fn unit(self) -> Unit {
+        match self {
+            Self::Current => Unit::Ampere,
+            Self::Torque => Unit::NewtonMetre,
+        }
+    }
+
+    /// Its meaning, in one sentence.
+    const fn meaning(self) -> &'static str {
+        match self {
+            Self::Current => "Current of the joint's drive as it is read, by the cell's arm file.",
+            Self::Torque => "Torque of the joint's drive as it is read, by the cell's arm file.",
+        }
+    }
+}
+
+/// Name of a drive's reading; joints are counted from 1, base first: `joint_1_current`.
+#[must_use]
+pub fn drive_quantity(joint: usize, reading: DriveReading) -> String {
+    format!("joint_{joint}_{}", reading.name())
+}
+
+/// What a name made by [`drive_quantity`] reads.
+fn drive_reading(quantity: &str) -> Option<DriveReading> {
+    let (number, name) = quantity.strip_prefix("joint_")?.split_once('_')?;
+    number.parse::<usize>().ok()?;
+    DriveReading::ALL.into_iter().find(|r| r.name() == name)
+}
+
+/// Name of a reading of a wrench sensor's channel, as in `wrench_force_x`.
+#[must_use]
+pub fn wrench_quantity(channel: &str) -> String {
+    format!("{WRENCH}{channel}")
+}
+
+const WRENCH: &str = "wrench_";
+
 /// A joint's name as names of quantities have it: small letters, digits and underscores.
 #[must_use]
 pub fn plain_joint(joint: &str) -> String {
@@ -228,7 +287,12 @@ pub fn meaning(quantity: &str) -> Option<&'static str> {
         PHASE => Some("Name of the phase of the job."),
         _ => definition(quantity)
             .map(|signal| signal.meaning)
-            .or_else(|| parse_joint_quantity(quantity).map(|(_, signal)| signal.meaning())),
+            .or_else(|| parse_joint_quantity(quantity).map(|(_, signal)| signal.meaning()))
+            .or_else(|| drive_reading(quantity).map(DriveReading::meaning))
+            .or_else(|| {
+                let of_wrench = quantity.starts_with(WRENCH);
+                of_wrench.then_some("Channel of the arm's wrench sensor as it is read, raw.")
+            }),
     }
 }
 

@@ -2,7 +2,9 @@
 
 use crate::arm::chain::{JointKind, KinematicChain};
 use crate::arm::load_arm;
-use crate::cell::{CellError, arm_options, choose_edge, complete, station, with_housing};
+use crate::cell::{
+    CellError, arm_options, check_recorded_arm, choose_edge, complete, station, with_housing,
+};
 use crate::plant::{EdgeStation, PlantParameters, SharpEdge};
 use crate::scenario::{RecordedCell, load_recorded_cell};
 use crate::workpiece::{EdgeCurve, load_mesh};
@@ -43,6 +45,7 @@ impl LoadedCell {
     /// A fault of the arm, the mesh or the choice of the edge; joints that are not served alike.
     pub fn new(mut scenario: RecordedCell) -> Result<Self, CellError> {
         let arm = load_arm(&scenario.arm.urdf, &arm_options(&scenario.arm))?;
+        check_recorded_arm(&scenario.arm, &arm.chain)?;
         let joints: Vec<String> = arm.chain.joints.iter().map(|j| j.name.clone()).collect();
         let axes = arm.chain.len();
         if let Some(found) = scenario.springs

@@ -1,5 +1,6 @@
 //! A cell's whole job: simulated and measured.
 
+use super::arm_sensors::with_arm_sensors;
 use super::error::RunError;
 use crate::cell::Cell;
 use crate::metrics::{EdgeLimits, Summary, SummaryLimits, summarise, summarise_edge};
@@ -33,9 +34,11 @@ pub fn run_cell(
     let CellRun {
         recording,
         frames,
+        contact_points,
         stop,
         edge,
     } = cell.run(observer)?;
+    let recording = with_arm_sensors(cell, recording, &contact_points)?;
     let mut summary = summarise(&recording, &limits(cell))
         .map_err(RunError::metrics(&cell.setup.scenario.path))?;
     if let Some(edge) = &edge {

@@ -10,6 +10,7 @@
 //! # }
 //! ```
 
+mod arm_sensors;
 mod bench;
 mod cell;
 mod effects;

@@ -33,11 +33,13 @@ use crate::keys::check::Section;
 use crate::keys::declaration::of_file;
 use crate::keys::document::{Document, read_text};
 use crate::keys::error::ScenarioError;
+use crate::recorded_arm::push::Push;
 use crate::recorded_arm::{ArmParameters, Tolerated};
 use keys::ArmFileKeys;
 use names::Names;
 use values::Known;
 
+pub(super) use effects::{EffectTables, further as further_numbers};
 pub use improved::improved_arm_text;
 pub use noise::ArmNoise;
 
@@ -84,16 +86,49 @@ pub struct ArmFile {
 }
 
 impl ArmFile {
-    /// The arm, its pushes counted by a list of recordings; those of others act in none.
+    /// The arm, its pushes counted by a list of recordings; those of others act in none, those that name none act in each.
     #[must_use]
     pub fn arm(&self, recordings: &[String]) -> ArmParameters {
         let mut arm = self.nominal.clone();
-        for push in &mut arm.pushes {
+        arm.pushes.clear();
+        for push in &self.nominal.pushes {
             let name = &self.push_recordings[push.recording];
-            let place = recordings.iter().position(|own| own == name);
-            push.recording = place.unwrap_or(usize::MAX);
+            let places: Vec<usize> = match name.as_str() {
+                effects::EVERY => (0..recordings.len()).collect(),
+                name => {
+                    let place = recordings.iter().position(|own| own == name);
+                    vec![place.unwrap_or(usize::MAX)]
+                }
+            };
+            let there = |recording| Push { recording, ..*push };
+            arm.pushes.extend(places.into_iter().map(there));
         }
         arm
+    }
+
+    /// The arm with further effects, that a scenario lists under a key of it.
+    pub(super) fn with_effects(
+        mut self,
+        document: &Document<'_>,
+        (list, effects): (&str, &EffectTables),
+    ) -> Result<Self, ScenarioError> {
+        let names = Names {
+            links: &self.links,
+            numbers: &self.numbers,
+        };
+        let (arm, recordings) = (&mut self.nominal, &mut self.push_recordings);
+        effects::apply(document, (list, effects), names, arm, recordings)?;
+        Ok(self)
+    }
+
+    /// Names of the joints in the order of the drives.
+    #[must_use]
+    pub fn joints_of_drives(&self) -> Vec<&str> {
+        let mut joints: Vec<(usize, &str)> = (self.numbers.iter().copied())
+            .zip(self.nominal.chain.joints.iter().map(|j| j.name.as_str()))
+            .collect();
+        joints.sort_unstable();
+        joints.into_iter().map(|(_, name)| name).collect()
     }
 
     /// The arm of the URDF with its shapes.
@@ -189,7 +224,7 @@ pub fn from_text(path: &Path, text: &str) -> Result<ArmFile, ScenarioError> {
     let mut push_recordings = Vec::new();
     effects::apply(
         &document,
-        &keys.effects,
+        ("effect", &keys.effects),
         names,
         &mut arm,
         &mut push_recordings,

@@ -6,6 +6,7 @@ use glam::{DQuat, DVec3};
 use glamx::DPose3;
 use serde::Deserialize;
 
+use super::arm_file::ArmFile;
 use super::assumed::AssumedValue;
 use super::controller::ControllerScenario;
 use crate::effects::PresentEffect;
@@ -103,8 +104,8 @@ pub struct ArmScenario {
     pub drives: Vec<DriveScenario>,
     /// The joint servo.
     pub servo: ServoScenario,
-    /// File of the arm's drives, load and wrench sensor.
-    pub recorded_arm: Option<PathBuf>,
+    /// The arm's drives, load and wrench sensor, with the effects that the scenario puts into them.
+    pub recorded_arm: Option<Box<ArmFile>>,
 }
 
 /// The device's file, and how it is used.

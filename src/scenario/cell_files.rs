@@ -26,7 +26,7 @@ pub fn files_of_cell<'a>(
             ObstacleShape::Mesh { path, .. } => Some(path),
             ObstacleShape::Box(_) => None,
         });
-    let arm_file = &arm.recorded_arm;
+    let arm_file = arm.recorded_arm.as_ref().map(|file| &file.path);
     for file in others
         .into_iter()
         .chain(arm_file)

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use glam::DVec3;
 use serde::Deserialize;
 
+use super::arm_file::EffectTables;
 use super::cell::{
     ContactKeys, DriveScenario, LimitOverride, Misplacement, ProcessScenario, ServoScenario,
     SimulationScenario,
@@ -128,8 +129,11 @@ keys! {
         payload: Option<f64> = "payload_kg" in 0.1..=3000.0, shown "that of its maker, where the robot's name in the URDF is known";
         /// joint angles, one for each axis, near which a posture is sought first; when left out, it is found by search
         seed_posture: Option<Vec<f64>> = "seed_posture_deg" in -360..=360;
-        /// file of kind `recorded_arm`: drives, load, wrench sensor and their tolerances, for recordings with the drives' currents or torques and a raw wrench
+        /// file of kind `recorded_arm`: drives, load, wrench sensor and their tolerances, for recordings with the drives' currents or torques and a raw wrench; a run
+        /// records what they would read
         recorded_arm: Option<PathBuf> = "recorded_arm";
+        /// effects of that file's drives, load and wrench sensor, beside those that it holds
+        effects: EffectTables = "effect";
         servo: ServoScenario = "servo";
     }
 

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use glam::DVec3;
 
+use super::arm_file::{ArmFile, EffectTables, load_arm_file};
 use super::assumed;
 use super::cell::ContactKeys;
 use super::collision::collision;
@@ -111,10 +112,26 @@ pub(super) fn arm(
         payload: keys.payload,
         seed_posture: keys.seed_posture,
         servo: keys.servo,
-        recorded_arm: (keys.recorded_arm.as_deref())
-            .map(|path| section.file("recorded_arm", path))
-            .transpose()?,
+        recorded_arm: recorded_arm(section, keys.recorded_arm.as_deref(), &keys.effects)?,
     })
+}
+
+/// The arm file with the effects that the scenario puts into it.
+fn recorded_arm(
+    section: &Section<'_>,
+    path: Option<&Path>,
+    effects: &EffectTables,
+) -> Result<Option<Box<ArmFile>>, ScenarioError> {
+    let Some(path) = path else {
+        if effects.is_empty() {
+            return Ok(None);
+        }
+        let expected = "the arm file that [[arm.effect]] changes (`idc new arm` writes one)";
+        return Err(section.missing("recorded_arm", expected));
+    };
+    let file = load_arm_file(&section.file("recorded_arm", path)?)?;
+    let file = file.with_effects(section.document(), ("arm.effect", effects))?;
+    Ok(Some(Box::new(file)))
 }
 
 fn link_masses(

@@ -16,8 +16,9 @@ use crate::keys::suggestion::nearest_dotted;
 pub use edit::{KeyValue, listed};
 
 /// Keys that name files or folders, from the scenario's folder; `*` stands for any name.
-const PATHS: [&str; 5] = [
+const PATHS: [&str; 6] = [
     "arm.urdf",
+    "arm.recorded_arm",
     "arm.packages.*",
     "device.model",
     "workpiece.mesh",

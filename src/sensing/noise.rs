@@ -23,6 +23,10 @@ pub enum Stream {
     RegulatorPressure = 4,
     /// The joints' encoders'.
     Encoders = 5,
+    /// The currents' or torques' of the joints' drives.
+    Drives = 6,
+    /// The wrench sensor's.
+    Wrench = 7,
 }
 
 /// A stream of standard normal numbers.

@@ -1,5 +1,7 @@
 //! A whole job of a cell, from its first step to its last.
 
+use glam::DVec3;
+
 use super::{FrameLog, Simulation, SimulationError};
 use crate::cell::Cell;
 use crate::recording::csv::EdgeProfile;
@@ -12,6 +14,8 @@ pub struct CellRun {
     pub recording: Recording,
     /// Poses for the picture.
     pub frames: FrameLog,
+    /// Where the tool touches, by sample [m]; empty where the cell names no arm file.
+    pub contact_points: Vec<DVec3>,
     /// The edge as a turning tool left it.
     pub edge: Option<EdgeProfile>,
     /// Reason why it ended early, if it did.
@@ -33,8 +37,10 @@ impl Cell {
             stop = simulation.step().err();
             observer(&simulation);
         }
+        let contact_points = simulation.take_contact_points();
         let (samples, frames, edge) = simulation.into_logs();
         Ok(CellRun {
+            contact_points,
             edge: edge.as_ref().map(profile),
             recording: samples.into_recording()?,
             frames,

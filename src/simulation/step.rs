@@ -99,6 +99,8 @@ pub struct Simulation<'a> {
     slide_force: f64,
     log: SampleLog,
     frames: FrameLog,
+    /// Where the tool touches, by sample [m]; of a cell whose arm's sensors are read after the run.
+    contact_points: Option<Vec<DVec3>>,
     next_frame: f64,
     clearance: ClearanceWatch,
     /// The tool's cutting, if it turns.
@@ -182,6 +184,7 @@ impl<'a> Simulation<'a> {
             slide_force: 0.0,
             log: SampleLog::new(count - 1, scenario.tool.is_some(), total_steps),
             frames: FrameLog::default(),
+            contact_points: scenario.arm.recorded_arm.as_ref().map(|_| Vec::new()),
             next_frame: 0.0,
             clearance: start::clearance(cell, &positions),
             cutting: Cutting::new(cell),
@@ -209,6 +212,11 @@ impl<'a> Simulation<'a> {
     /// The record so far.
     pub fn logs(&self) -> (&SampleLog, &FrameLog) {
         (&self.log, &self.frames)
+    }
+
+    /// Where the tool touches, by sample [m]; none where the cell names no arm file.
+    pub fn take_contact_points(&mut self) -> Vec<DVec3> {
+        self.contact_points.take().unwrap_or_default()
     }
 
     /// The record so far, and the end of the run: samples, frames, and the edge as a turning tool left it.

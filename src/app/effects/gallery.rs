@@ -5,9 +5,10 @@ use std::path::Path;
 
 use super::super::error::AppError;
 use super::super::files::{OverwritePolicy, prepare_file};
+use super::arm_page::{ArmExplained, HEADING};
 use super::page::{Explained, by_subsystem, list};
-use super::picture::picture;
-use crate::demonstration::{self as scene, Stage};
+use super::picture::{Picture, picture, picture_of_arm};
+use crate::demonstration::{self as scene, ArmStage, Stage, arm_effects};
 use crate::document::markdown_below;
 use crate::recording::atomic::write_text;
 
@@ -36,6 +37,21 @@ const END: &str = "
 This page and its pictures are made by `idc effects --gallery docs --force`, of the header comments in `src/effects/`.
 ";
 
+const OF_ARM: &str = "\
+What an arm file may hold beyond its nominal numbers ([models/arm/arm10.toml](../models/arm/arm10.toml) is one), and `--with` puts into a cell whose `[arm] recorded_arm` names one. It changes what
+currents, torques and the wrench sensor read, and not where the tool goes: the simulated servo is stiff. Readings are computed after the run of [drives_and_wrench](../scenarios/drives_and_wrench.toml).
+joint_friction, compliant_joint and joint_encoder_offset are those of the cell, above. Numbers are in SI.
+";
+
+/// A line on a picture.
+fn reported(name: &str, drawn: &Picture) -> String {
+    format!(
+        "{name}: {:.0} % of its range, {} bytes\n",
+        100.0 * drawn.difference,
+        drawn.svg.len()
+    )
+}
+
 /// Writes it all; says what was written.
 pub(super) fn write(folder: &Path, policy: OverwritePolicy) -> Result<String, AppError> {
     let mut stages: BTreeMap<String, Stage> = BTreeMap::new();
@@ -58,13 +74,19 @@ pub(super) fn write(folder: &Path, policy: OverwritePolicy) -> Result<String, Ap
             text += &format!("\n{}", markdown_below(&page, 3));
             let name = effect.vocabulary().0;
             let drawn = picture(effect, stage)?;
-            summary += &format!(
-                "{name}: {:.0} % of its range, {} bytes\n",
-                100.0 * drawn.difference,
-                drawn.svg.len()
-            );
+            summary += &reported(name, &drawn);
             pictures.push((folder.join(PICTURES).join(format!("{name}.svg")), drawn.svg));
         }
+    }
+    text += &format!("\n## {HEADING}\n\n{OF_ARM}");
+    let stage = ArmStage::new()?;
+    for effect in arm_effects() {
+        let explained = ArmExplained::new(effect, &stage, PICTURES)?;
+        text += &format!("\n{}", markdown_below(&explained.document(), 3));
+        let drawn = picture_of_arm(effect, &stage, explained.title())?;
+        let name = effect.name;
+        summary += &reported(name, &drawn);
+        pictures.push((folder.join(PICTURES).join(format!("{name}.svg")), drawn.svg));
     }
     text += END;
     pictures.push((folder.join(TEXT), text));

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::arm_page;
 use crate::demonstration::{self as scene, Scene, Stage};
 use crate::diagnosis::answer::words::{capital, display_name};
 use crate::document::{Block, Cell, Column, Document, Section, Table};
@@ -109,7 +110,7 @@ pub(super) fn title(effect: &Effect, nominal: &PlantParameters, joint: usize) ->
 }
 
 /// A size as people say it: no more digits than it has.
-fn size(value: f64) -> String {
+pub(super) fn size(value: f64) -> String {
     let text = significant(value, DIGITS);
     match text.contains('.') && !text.contains('·') {
         true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
@@ -241,7 +242,7 @@ pub(super) fn list() -> Document<'static> {
         Section::new(heading, vec![Block::Table(table)])
     });
     Document {
-        sections: sections.collect(),
+        sections: sections.chain([arm_page::section()]).collect(),
         ..Document::default()
     }
 }

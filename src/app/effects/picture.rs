@@ -2,10 +2,11 @@
 
 use super::super::error::AppError;
 use super::page::title;
-use crate::demonstration::{self as scene, Signal, Stage};
+use crate::demonstration::{self as scene, ArmStage, Signal, Signals, Stage};
 use crate::document::{Figure, Panel, Role, Series, Stroke};
 use crate::effects::Effect;
 use crate::figure::svg;
+use crate::recorded_arm::vocabulary::ArmEffectName;
 
 /// Largest distance of a line with fewer points from the one with all, as a share of its panel's height: a third of a pixel.
 const BESIDE_LINE: f64 = 2e-3;
@@ -19,11 +20,35 @@ pub(super) struct Picture {
 
 /// Runs the scene of an effect nominal and with it, and draws both.
 pub(super) fn picture(effect: &Effect, stage: &Stage) -> Result<Picture, AppError> {
-    let runs = stage.runs(effect)?;
+    let shown = scene::of(effect);
+    let title = title(effect, &stage.nominal, stage.most_observable_joint);
+    drawn(
+        &stage.runs(effect)?,
+        shown.window,
+        Some(shown.signals),
+        title,
+    )
+}
+
+/// The picture of an effect of an arm file: the readings that it changes most, over the whole run.
+pub(super) fn picture_of_arm(
+    effect: &ArmEffectName,
+    stage: &ArmStage,
+    title: String,
+) -> Result<Picture, AppError> {
+    drawn(&stage.runs(effect)?, None, None, title)
+}
+
+/// Draws runs without an effect and with it: signals of these keys, or all.
+fn drawn(
+    runs: &[Signals; 2],
+    window: Option<[f64; 2]>,
+    keys: Option<&[&str]>,
+    title: String,
+) -> Result<Picture, AppError> {
     let time = &runs[0].time;
     let count = time.len().min(runs[1].time.len());
-    let shown = scene::of(effect);
-    let span = match shown.window {
+    let span = match window {
         None => 0..count,
         Some(window) => {
             let [from, to] = window.map(|at| time.partition_point(|time| *time < at).min(count));
@@ -32,13 +57,16 @@ pub(super) fn picture(effect: &Effect, stage: &Stage) -> Result<Picture, AppErro
     };
     let mut difference = 0.0f64;
     let mut panels = Vec::new();
-    for key in shown.signals {
-        let both: Vec<&Signal> = (runs.iter())
-            .filter_map(|run| run.signals.iter().find(|signal| signal.key == *key))
-            .collect();
-        let [nominal, with] = both.as_slice() else {
-            continue;
-        };
+    let both = |key: &str| {
+        let mut all = runs.iter();
+        let mut own = || all.next()?.signals.iter().find(|signal| signal.key == key);
+        Some((own()?, own()?))
+    };
+    let pairs: Vec<(&Signal, &Signal)> = match keys {
+        Some(keys) => keys.iter().filter_map(|key| both(key)).collect(),
+        None => runs[0].signals.iter().zip(&runs[1].signals).collect(),
+    };
+    for (nominal, with) in pairs {
         let values = [nominal, with].map(|signal| &signal.values[span.clone()]);
         let all = || values.iter().copied().flatten();
         let low = all().copied().fold(f64::INFINITY, f64::min);
@@ -72,7 +100,6 @@ pub(super) fn picture(effect: &Effect, stage: &Stage) -> Result<Picture, AppErro
             ..Panel::default()
         });
     }
-    let title = title(effect, &stage.nominal, stage.most_observable_joint);
     let svg = svg(&Figure { title, panels })?;
     Ok(Picture { svg, difference })
 }

@@ -26,7 +26,7 @@ pub(in super::super) struct RunArguments {
     /// Another value for a key of the scenario by its dotted path, as in process.force_n=150; of several values, divided by commas, each is run, and of several --set each combination.
     #[arg(long = "set", value_name = "KEY=VALUE[,VALUE..]", value_parser = Setting::parse)]
     pub(super) settings: Vec<Setting>,
-    /// An effect of the catalogue to put in: its name, and those of its numbers that are not to have their usual size, in any unit of theirs, as in tool_runout:amplitude_mm=0.1,frequency_hz=120 or joint_friction:joint=3; may be given several times.
+    /// An effect of the catalogue to put in: its name, and those of its numbers that are not to have their usual size, in any unit of theirs, as in tool_runout:amplitude_mm=0.1,frequency_hz=120 or joint_friction:joint=3, of an arm file as in wrench_drift:channel=force_x; may be given several times.
     #[arg(long = "with", value_name = "EFFECT[:KEY=VALUE,..]", value_parser = EffectRequest::parse)]
     pub(super) effects: Vec<EffectRequest>,
     /// With --set, leave runs as they are that stand complete, as of one that was interrupted.

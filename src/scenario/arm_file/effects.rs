@@ -40,7 +40,7 @@ const FRICTIONS: [&str; 3] = [
 /// `[[effect]]` as it is written.
 #[derive(Debug, Clone, Default, PartialEq, Deserialize)]
 #[serde(transparent)]
-pub(super) struct EffectTables(Vec<BTreeMap<String, EffectValue>>);
+pub(in super::super) struct EffectTables(Vec<BTreeMap<String, EffectValue>>);
 
 impl Filled for EffectTables {
     type Written = Self;
@@ -98,7 +98,7 @@ fn having(key: &str) -> Vec<&'static str> {
 }
 
 /// Keys that an effect may have beyond its numbers in the vocabulary.
-pub(super) const fn further(name: &str) -> &'static [&'static str] {
+pub(in super::super) const fn further(name: &str) -> &'static [&'static str] {
     match name.as_bytes() {
         b"gear_ripple" => &["phase_rad"],
         b"outside_push" => &["direction_x", "direction_y", "direction_z", "edge"],
@@ -114,17 +114,24 @@ struct Read<'a> {
     names: Names<'a>,
 }
 
-/// Puts the effects of a file into its arm. Pushes are counted by the file's own list of recordings, which grows.
+impl EffectTables {
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+}
+
+/// Puts effects, listed under a key of a file, into an arm. Pushes are counted by the arm's own list of recordings, which grows.
 pub(super) fn apply(
     document: &Document<'_>,
-    EffectTables(tables): &EffectTables,
+    (list, EffectTables(tables)): (&str, &EffectTables),
     names: Names<'_>,
     arm: &mut ArmParameters,
     recordings: &mut Vec<String>,
 ) -> Result<(), ScenarioError> {
     let mut seen: Vec<(&str, String)> = Vec::new();
     for (index, table) in tables.iter().enumerate() {
-        let section = Section::new(document, format!("effect[{index}]"));
+        let section = Section::new(document, format!("{list}[{index}]"));
         let effect = named(&section, table)?;
         let read = Read {
             section,
@@ -132,7 +139,7 @@ pub(super) fn apply(
             effect,
             names,
         };
-        read.check_keys(document, index)?;
+        read.check_keys()?;
         let place = read.place();
         let other = seen.iter().find(|(name, other)| {
             let alike = *name == effect.name
@@ -190,7 +197,7 @@ fn range(key: &str) -> [f64; 2] {
 }
 
 impl Read<'_> {
-    fn check_keys(&self, document: &Document<'_>, index: usize) -> Result<(), ScenarioError> {
+    fn check_keys(&self) -> Result<(), ScenarioError> {
         let places = self.effect.places.iter().map(|place| place.key());
         let numbers = self.effect.numbers.iter().copied();
         let further = further(self.effect.name).iter().copied();
@@ -203,9 +210,9 @@ impl Read<'_> {
         match self.table.keys().find(|key| !known.contains(&key.as_str())) {
             None => Ok(()),
             Some(key) => {
-                let dotted = format!("effect[{index}].{key}");
+                let dotted = self.section.dotted(key);
                 Err(ScenarioError::UnknownKey {
-                    location: document.key_location(&dotted),
+                    location: self.section.document().key_location(&dotted),
                     key: dotted,
                     advice: nearest(key, &known),
                 })
@@ -392,7 +399,10 @@ impl Read<'_> {
             "base_tilt" => arm.tilt = [n("roll_rad")?, n("pitch_rad")?],
             "current_late" => arm.delay = n("delay_s")?,
             _ => {
-                let name = self.text(Place::Recording, "the name of its recording's file")?;
+                let name = match self.table.contains_key(Place::Recording.key()) {
+                    true => self.text(Place::Recording, "the name of its recording's file")?,
+                    false => EVERY,
+                };
                 let push = self.push(place_of(recordings, name))?;
                 arm.pushes.push(push);
             }
@@ -421,6 +431,9 @@ impl Read<'_> {
         })
     }
 }
+
+/// Name under which something is in every recording.
+pub(super) const EVERY: &str = "";
 
 /// Place of a recording in a list, which it is put into where it is not there.
 fn place_of(recordings: &mut Vec<String>, name: &str) -> usize {

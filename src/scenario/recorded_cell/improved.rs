@@ -44,6 +44,10 @@ pub fn improved_cell_text(
     }
     if let Some(name) = arm_file {
         document["arm"]["recorded_arm"] = value(name);
+        // The file beside it holds them, as they were found.
+        if let Some(arm) = document["arm"].as_table_like_mut() {
+            arm.remove("effect");
+        }
     }
     if let Some(packages) = document["arm"]
         .get_mut("packages")

@@ -171,7 +171,7 @@ fn put(item: &mut Item, path: &str, steps: &[Step], value: &Value) -> Result<(),
             };
             if !table.contains_key(name) {
                 // Filled below.
-                let list = path == EFFECTS && rest.len() == 2;
+                let list = EFFECTS.contains(&path.as_str()) && rest.len() == 2;
                 let new = if list {
                     Item::ArrayOfTables(ArrayOfTables::new())
                 } else {
@@ -195,26 +195,46 @@ fn put(item: &mut Item, path: &str, steps: &[Step], value: &Value) -> Result<(),
 }
 
 /// Tables that a list has by their names.
-const EFFECTS: &str = "effect";
+const EFFECTS: [&str; 2] = ["effect", "arm.effect"];
+
+/// Name of an effect and what says where it is: of the catalogue its joint, of an arm file as in `gear_ripple joint=2`.
+fn name_and_places(name: &str) -> (&str, Vec<(&str, Value)>) {
+    let mut words = name.split_whitespace();
+    let (kind, joint) = vocabulary(words.next().unwrap_or_default());
+    let mut places: Vec<(&str, Value)> = words
+        .filter_map(|word| word.split_once('='))
+        .map(|(key, text)| match text.parse::<i64>() {
+            Ok(number) => (key, Value::from(number)),
+            Err(_) => (key, Value::from(text)),
+        })
+        .collect();
+    places.extend(joint.map(|joint| ("joint", Value::from(joint as i64))));
+    (kind, places)
+}
 
 /// Place of the effect of a name in a list of them, put at its end where there is none.
 fn named(item: &mut Item, name: &str) -> usize {
     let Some(tables) = item.as_array_of_tables_mut() else {
         return 0;
     };
-    let (kind, joint) = vocabulary(name);
-    let joint = joint.map(|joint| joint as i64);
+    let (kind, places) = name_and_places(name);
+    let shown = |value: &Value| value.to_string().trim().to_owned();
     let is_it = |table: &Table| {
         let own = table.get("name").and_then(Item::as_str);
-        own == Some(kind) && table.get("joint").and_then(Item::as_integer) == joint
+        let same = |(key, value): &(&str, Value)| {
+            let own = table.get(key).and_then(Item::as_value);
+            own.is_some_and(|own| shown(own) == shown(value))
+        };
+        let has_joint = places.iter().any(|(key, _)| *key == "joint");
+        own == Some(kind) && places.iter().all(same) && has_joint == table.contains_key("joint")
     };
     if let Some(place) = tables.iter().position(is_it) {
         return place;
     }
     let mut table = Table::new();
     table.insert("name", toml_edit::value(kind));
-    if let Some(joint) = joint {
-        table.insert("joint", toml_edit::value(joint));
+    for (key, place) in places {
+        table.insert(key, toml_edit::value(place));
     }
     tables.push(table);
     tables.len() - 1

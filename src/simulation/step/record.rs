@@ -136,6 +136,10 @@ impl Simulation<'_> {
         let joints = self.joint_signals(reference);
         self.check_finite(&signals, &joints[..n], reference.phase, time)?;
         self.record(reference, time, &signals, &joints[..n]);
+        let touching = self.touching(normal);
+        if let Some(points) = &mut self.contact_points {
+            points.push(touching);
+        }
         if time >= self.next_frame {
             self.frame(time, reference, force_on_part, normal);
             self.next_frame += FRAME_INTERVAL;
@@ -180,16 +184,18 @@ impl Simulation<'_> {
         }
     }
 
+    /// Where the tool touches a part of this normal [m].
+    fn touching(&self, normal: DVec3) -> DVec3 {
+        self.world.tool_centre() - normal * self.cell.setup.scenario.nominal.mounting.tool_radius
+    }
+
     fn frame(&mut self, time: f64, reference: &Reference, force: DVec3, normal: DVec3) {
         self.frames.times.push(time);
         self.frames.path_lengths.push(reference.edge_length);
         let mut links = vec![DPose3::IDENTITY; self.laws.len()];
         self.world.link_poses(&mut links);
         self.frames.links.push(links);
-        let radius = self.cell.setup.scenario.nominal.mounting.tool_radius;
-        self.frames
-            .contact_points
-            .push(self.world.tool_centre() - normal * radius);
+        self.frames.contact_points.push(self.touching(normal));
         self.frames.contact_forces.push(force);
     }
 }

@@ -138,6 +138,7 @@ fn count_running(simulation: &Simulation<'_>, values: &[f64], reduced: &[usize])
         clearance: _,
         cutting: _,
         feed_lag,
+        contact_points: _, // Read, not acted on.
         feed_override,
     } = simulation;
     let borrowed: &RunningDevice<'_> = device;
