@@ -339,8 +339,7 @@ fn a_part_that_is_misplaced_and_friction_of_a_drive_are_both_named() {
     );
     // What is written is a cell again, with the arm beside it.
     let improved = load_recorded_cell(&bench.path("out/improved.toml")).unwrap();
-    let file = improved.arm.recorded_arm.unwrap();
-    let arm = idc_cell::scenario::arm_file::load_arm_file(&file).unwrap();
+    let arm = improved.arm.recorded_arm.unwrap();
     assert!((arm.nominal.drives[1].coulomb - dry.value).abs() < 1e-6);
 }
 
