@@ -9,16 +9,18 @@ use idc_cell::scenario::arm_file::load_arm_file;
 use crate::common::{project, run, scenario};
 use crate::program::Bench;
 
-/// An arm file whose drives log torques and lose as much as the URDF's joints by their damping, almost without noise.
-fn without_losses() -> String {
+/// An arm file whose drives log torques and lose as much as the URDF's joints by damping and friction, almost without noise.
+fn losses_of_urdf() -> String {
     let text = std::fs::read_to_string(project("models/arm/arm10.toml")).unwrap();
     let urdf = project("models/arm/arm10.urdf").display().to_string();
     let mut out = String::new();
+    let mut friction = ["1.0", "1.0", "0.5", "0.2", "0.2", "0.2"].iter();
     let mut damping = ["1.0", "1.0", "0.5", "0.1", "0.1", "0.1"].iter();
     for line in text.lines() {
         let key = line.split(' ').next().unwrap_or_default();
         out += &match key {
-            "gain_n_m_per_a" | "coulomb_friction_n_m" | "motor_inertia_kg_m2" => continue,
+            "gain_n_m_per_a" | "motor_inertia_kg_m2" => continue,
+            "coulomb_friction_n_m" => format!("{key} = {}", friction.next().unwrap()),
             "viscous_friction_n_m_s_per_rad" => format!("{key} = {}", damping.next().unwrap()),
             "current_a" => "torque_n_m = [1e-9, 1e-9, 1e-9, 1e-9, 1e-9, 1e-9]".to_owned(),
             "wrench_force_n" | "wrench_torque_n_m" => format!("{key} = 1e-9"),
@@ -31,10 +33,11 @@ fn without_losses() -> String {
 }
 
 #[test]
-fn drives_without_losses_read_the_torques_of_the_servos_and_the_wrench_is_weight_and_contact() {
+fn drives_that_lose_as_the_urdf_read_the_torques_of_the_servos_and_the_wrench_is_weight_and_contact()
+ {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("arm.toml");
-    std::fs::write(&file, without_losses()).unwrap();
+    std::fs::write(&file, losses_of_urdf()).unwrap();
     let mut cell = scenario("drives_and_wrench");
     cell.arm.recorded_arm = Some(Box::new(load_arm_file(&file).unwrap()));
     let finished = run(cell);
