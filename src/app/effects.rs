@@ -18,8 +18,8 @@ use crate::effects::{Effect, NUMBER_OFF, NUMBERS_OFF, kinds};
 use crate::keys::suggestion::nearest;
 use crate::recorded_arm::vocabulary::ArmEffectName;
 use crate::recording::atomic::write_text;
-use arm_page::ArmExplained;
-use page::{Explained, by_subsystem, list};
+use arm_page::{ArmExplained, list_of_all};
+use page::{Explained, by_subsystem};
 use picture::{picture, picture_of_arm};
 
 /// For the help.
@@ -80,7 +80,7 @@ pub(super) fn run(arguments: &EffectsArguments) -> Result<ExitCode, AppError> {
         if arguments.json {
             say(&format!("{:#}\n", listed()))?;
         } else if !arguments.quiet {
-            say(&text(&list(), Style::Plain))?;
+            say(&text(&list_of_all(), Style::Plain))?;
             say(&format!("\n{AFTER_LIST}"))?;
         }
         return Ok(ExitCode::Done);

@@ -17,7 +17,7 @@ use crate::diagnosis::arm::input::{ArmInput, ArmRecording};
 use crate::diagnosis::arm::{ArmDiagnosis, diagnose};
 use crate::diagnosis::difference::comparison::{Compared, ComparedChannel, Comparison};
 use crate::plant::{ArmTrajectory, PlantInputs, PlantParameters, simulate};
-use crate::recorded_arm::carrier::Carrier;
+use crate::recorded_arm::device_mount::DeviceMount;
 use crate::recorded_arm::motion::{Motion, every, sample_time};
 use crate::recorded_arm::outside::{Outside, OutsideWrench};
 use crate::recorded_arm::simulate::Channel;
@@ -141,7 +141,7 @@ impl CellDrives {
         };
         let of = |(index, (log, inputs)): (usize, (&ArmLog, &PlantInputs))| {
             let mut recording = log.recording(index, &self.channels);
-            flange.put_into(&mut recording, inputs);
+            flange.apply_to(&mut recording, inputs);
             recording
         };
         let logs = self.known.iter().zip(known.iter().copied());
@@ -219,7 +219,7 @@ struct Flange<'a> {
 impl Flange<'_> {
     /// Puts it into a recording, and takes out readings where nobody knows it: a tool that rests holds on to the part by whatever friction it came to rest with,
     /// and what strikes does so faster than an arm is modelled.
-    fn put_into(&self, recording: &mut ArmRecording, inputs: &PlantInputs) {
+    fn apply_to(&self, recording: &mut ArmRecording, inputs: &PlantInputs) {
         let Some(trajectory) = &inputs.cell else {
             return;
         };
@@ -267,7 +267,7 @@ impl Flange<'_> {
         let [q, qd, qdd] =
             [&motion.position, &motion.speed, &motion.acceleration].map(|all| of(all));
         let mounting = &self.cell.scenario.nominal.mounting;
-        let carrier = Carrier {
+        let device_mount = DeviceMount {
             arm: self.nominal,
             mount: &self.cell.chain,
             world_from_base: self.cell.scenario.arm.world_from_base,
@@ -276,11 +276,11 @@ impl Flange<'_> {
                 centre: mounting.moving_centre_of_mass,
             },
         };
-        let centre = carrier.on_axis(&q, mounting.tool_centre + slide[0]);
+        let centre = device_mount.on_axis(&q, mounting.tool_centre + slide[0]);
         let point = centre + contact.from_centre;
         let [pressed, drag] =
-            [contact.force, contact.drag].map(|force| carrier.pressed(&q, point, force));
-        (pressed + carrier.sliding([&q, &qd, &qdd], slide), drag)
+            [contact.force, contact.drag].map(|force| device_mount.pressed(&q, point, force));
+        (pressed + device_mount.sliding([&q, &qd, &qdd], slide), drag)
     }
 }
 

@@ -8,8 +8,8 @@
 //! flange, I inertia of motor and gear at the joint's side. One effect a file; of a prismatic joint read N for N m and m for rad.
 
 pub mod bristles;
-pub mod carrier;
 pub mod delay;
+pub mod device_mount;
 pub mod drive;
 pub mod filter;
 pub mod fourier_path;

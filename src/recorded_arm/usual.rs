@@ -33,7 +33,7 @@ pub fn usual(effect: &ArmEffectName, arm: &ArmParameters, joint: usize) -> Vec<f
         "joint_encoder_offset" => vec![2e-3],
         "joint_warm_up" => vec![0.5, 5.0],
         "payload" => vec![3.0, 0.0, 0.0, 0.05],
-        "link_mass_error" => vec![1.3 * arm.chain.joints[joint].body.mass],
+        "link_mass_error" => vec![1.6 * arm.chain.joints[joint].body.mass],
         "base_tilt" => vec![0.02, 0.01],
         "dress_pack_spring" => vec![clear, 0.0],
         "outside_push" => vec![3.0, 5.0, 40.0],

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 use crate::cell::Cell;
 use crate::recorded_arm::ArmParameters;
-use crate::recorded_arm::carrier::Carrier;
+use crate::recorded_arm::device_mount::DeviceMount;
 use crate::recorded_arm::motion::Motion;
 use crate::recorded_arm::outside::{Outside, OutsideWrench};
 use crate::recorded_arm::simulate::{Channel, RigidCourse, all_bristles, readings};
@@ -129,7 +129,7 @@ fn outside(
     (motion, points): (&Motion, &[DVec3]),
 ) -> Result<Outside, RecordingError> {
     let actual = &cell.setup.actual;
-    let carrier = Carrier {
+    let device_mount = DeviceMount {
         arm,
         mount: &cell.setup.arm.chain,
         world_from_base: cell.setup.scenario.arm.world_from_base,
@@ -152,7 +152,7 @@ fn outside(
             [&motion.position, &motion.speed, &motion.acceleration].map(|all| of(all));
         let on_tool = -DVec3::new(x[i], y[i], z[i]);
         let slide = [stroke[i], speed[i], acceleration[i]];
-        carrier.pressed(&q, *point, on_tool) + carrier.sliding([&q, &qd, &qdd], slide)
+        device_mount.pressed(&q, *point, on_tool) + device_mount.sliding([&q, &qd, &qdd], slide)
     };
     let wrench: Vec<OutsideWrench> = points.iter().enumerate().map(at).collect();
     Ok(Outside {

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::page::size;
+use super::page::{list, size};
 use crate::demonstration::{ArmStage, arm_effects};
 use crate::diagnosis::answer::words::{capital, display_name};
 use crate::document::{Block, Cell, Column, Document, Section, Table};
@@ -123,8 +123,15 @@ impl ArmExplained {
     }
 }
 
+/// All effects, those of an arm file last.
+pub(super) fn list_of_all() -> Document<'static> {
+    let mut all = list();
+    all.sections.push(section());
+    all
+}
+
 /// All of them, each with its meaning.
-pub(super) fn section() -> Section<'static> {
+fn section() -> Section<'static> {
     let row = |effect: &ArmEffectName| {
         let link = Cell::Link(effect.name.to_owned(), format!("#{}", effect.name));
         vec![link, effect.meaning.into()]

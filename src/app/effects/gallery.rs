@@ -5,8 +5,8 @@ use std::path::Path;
 
 use super::super::error::AppError;
 use super::super::files::{OverwritePolicy, prepare_file};
-use super::arm_page::{ArmExplained, HEADING};
-use super::page::{Explained, by_subsystem, list};
+use super::arm_page::{ArmExplained, HEADING, list_of_all};
+use super::page::{Explained, by_subsystem};
 use super::picture::{Picture, picture, picture_of_arm};
 use crate::demonstration::{self as scene, ArmStage, Stage, arm_effects};
 use crate::document::markdown_below;
@@ -56,7 +56,7 @@ fn reported(name: &str, drawn: &Picture) -> String {
 pub(super) fn write(folder: &Path, policy: OverwritePolicy) -> Result<String, AppError> {
     let mut stages: BTreeMap<String, Stage> = BTreeMap::new();
     let mut text = INTRODUCTION.to_owned();
-    text += &markdown_below(&list(), 3);
+    text += &markdown_below(&list_of_all(), 3);
     let mut summary = String::new();
     let mut pictures = Vec::new();
     for (heading, effects) in by_subsystem() {

@@ -2,7 +2,6 @@
 
 use serde::Serialize;
 
-use super::arm_page;
 use crate::demonstration::{self as scene, Scene, Stage};
 use crate::diagnosis::answer::words::{capital, display_name};
 use crate::document::{Block, Cell, Column, Document, Section, Table};
@@ -242,7 +241,7 @@ pub(super) fn list() -> Document<'static> {
         Section::new(heading, vec![Block::Table(table)])
     });
     Document {
-        sections: sections.chain([arm_page::section()]).collect(),
+        sections: sections.collect(),
         ..Document::default()
     }
 }

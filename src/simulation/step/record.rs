@@ -135,11 +135,7 @@ impl Simulation<'_> {
         ];
         let joints = self.joint_signals(reference);
         self.check_finite(&signals, &joints[..n], reference.phase, time)?;
-        self.record(reference, time, &signals, &joints[..n]);
-        let touching = self.touching(normal);
-        if let Some(points) = &mut self.contact_points {
-            points.push(touching);
-        }
+        self.record(reference, time, &signals, &joints[..n], normal);
         if time >= self.next_frame {
             self.frame(time, reference, force_on_part, normal);
             self.next_frame += FRAME_INTERVAL;
@@ -152,14 +148,19 @@ impl Simulation<'_> {
         self.check_stroke(reference, (stroke, axial), time)
     }
 
-    /// Adds a sample, of a tool that turns with what it did.
+    /// Adds a sample, of a tool that turns with what it did, and where it touches a part of this normal.
     fn record(
         &mut self,
         reference: &Reference,
         time: f64,
         signals: &[f64],
         joints: &[[f64; JointSignal::ALL.len()]],
+        normal: DVec3,
     ) {
+        let touching = self.touching(normal);
+        if let Some(points) = &mut self.contact_points {
+            points.push(touching);
+        }
         let place = (reference.phase, reference.pass);
         match &self.cutting {
             None => self.log.push(time, place, signals, joints),

@@ -13,7 +13,7 @@ use crate::arm::dynamics::{LinkState, link_states};
 use crate::arm::kinematics::tip_pose;
 
 /// A flange with a device.
-pub struct Carrier<'a> {
+pub struct DeviceMount<'a> {
     /// The arm.
     pub arm: &'a ArmParameters,
     /// The arm up to the mount of the slide.
@@ -24,7 +24,7 @@ pub struct Carrier<'a> {
     pub slide: SlidingMass,
 }
 
-impl Carrier<'_> {
+impl DeviceMount<'_> {
     /// Mount of the slide and flange of the description at angles of the joints [rad], in the world.
     fn frames(&self, q: &[f64]) -> [DPose3; 2] {
         [self.mount, &self.arm.chain].map(|chain| tip_pose(chain, self.world_from_base, q))
