@@ -35,29 +35,24 @@ pub(super) struct Touching {
 /// Speed along the edge at which friction is felt in full [m/s].
 const SLIDING: f64 = 1e-3;
 
-impl LoadedCell {
-    /// Where the ball of a trajectory touches at a sample that is neither the first nor the last, at a stroke [m].
-    pub(super) fn touching_at(
-        &self,
-        trajectory: &ArmTrajectory,
-        i: usize,
-        stroke: f64,
-    ) -> Touching {
-        let span = trajectory.time[i + 1] - trajectory.time[i - 1];
-        let edge = &trajectory.edge[i];
-        let centre = |i: usize| trajectory.ball[i] + trajectory.slide[i] * stroke;
-        let normal = match &trajectory.sharp {
-            Some(sharp) => sharp.touch(centre(i), edge.station).normal,
-            None => edge.bisector,
-        };
-        let speed = (centre(i + 1) - centre(i - 1)).dot(edge.tangent) / span;
-        Touching {
-            centre: centre(i),
-            normal,
-            sliding: (speed / SLIDING).clamp(-1.0, 1.0),
-        }
+/// Where the ball of a trajectory touches at a sample that is neither the first nor the last, at a stroke [m].
+pub(super) fn touching_at(trajectory: &ArmTrajectory, i: usize, stroke: f64) -> Touching {
+    let span = trajectory.time[i + 1] - trajectory.time[i - 1];
+    let edge = &trajectory.edge[i];
+    let centre = |i: usize| trajectory.ball[i] + trajectory.slide[i] * stroke;
+    let normal = match &trajectory.sharp {
+        Some(sharp) => sharp.touch(centre(i), edge.station).normal,
+        None => edge.bisector,
+    };
+    let speed = (centre(i + 1) - centre(i - 1)).dot(edge.tangent) / span;
+    Touching {
+        centre: centre(i),
+        normal,
+        sliding: (speed / SLIDING).clamp(-1.0, 1.0),
     }
+}
 
+impl LoadedCell {
     /// What the part does to the tool: strokes [m] and contact forces [N] by sample. Friction is that of a plant.
     pub fn tool_contacts(
         &self,
@@ -70,7 +65,7 @@ impl LoadedCell {
         let at = |i: usize| {
             // At the ends as beside them.
             let i = i.clamp(1, count.saturating_sub(2).max(1));
-            let touching = self.touching_at(trajectory, i, stroke[i]);
+            let touching = touching_at(trajectory, i, stroke[i]);
             let drag = -trajectory.edge[i].tangent * (friction * touching.sliding * force[i]);
             ToolContact {
                 from_centre: -touching.normal * self.scenario.nominal.mounting.tool_radius,

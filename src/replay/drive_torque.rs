@@ -9,7 +9,7 @@
 //! and along the edge, mu friction of the tool, v speed along the edge. A ball that stands a little off its place meets a sharp edge on another normal, and mu is
 //! known roughly: the shares of a contact force along normal and across it, and of the friction, are given beside. (Swevers et al., IEEE Control Systems 27(5), 2007: inverse dynamics identification.)
 
-use super::contact_load::Touching;
+use super::contact_load::{Touching, touching_at};
 use super::load::LoadedCell;
 use crate::arm::dynamics::inverse_dynamics;
 use crate::plant::{ArmTrajectory, JointTrajectory};
@@ -107,7 +107,7 @@ impl LoadedCell {
             centre,
             normal,
             sliding,
-        } = self.touching_at(trajectory, i, stroke);
+        } = touching_at(trajectory, i, stroke);
         let tangent = trajectory.edge[i].tangent;
         let pressed = force / -normal.dot(trajectory.slide[i]);
         let drag = self.scenario.nominal.cell.friction * pressed * sliding;
