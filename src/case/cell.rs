@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::arm_prediction::arm_prediction;
 use super::cell_drives::CellDrives;
 use super::error::CaseError;
+use super::recordings::{SAMPLES, is_run};
 use crate::diagnosis::answer::details::PredictionError;
 use crate::diagnosis::fit::free::{Free, Prior};
 use crate::diagnosis::joints::friction::{DriveLoad, JointFriction, joint_friction};
@@ -20,8 +21,6 @@ use crate::recording::samples::{cell_recording, read_table};
 use crate::replay::{Drive, LoadedCell};
 use crate::scenario::RecordedCell;
 
-/// The samples of a run.
-const SAMPLES: &str = "samples.parquet";
 /// Name of a recording that is to be predicted, whatever it holds.
 const PREDICT: &str = "predict";
 /// Noise of a channel that cells do not have: nothing is as much.
@@ -76,11 +75,6 @@ fn recordings(folder: &Path) -> Vec<PathBuf> {
         .collect();
     files.sort();
     files
-}
-
-/// Whether a file holds the samples of a run.
-pub(super) fn is_run(path: &Path) -> bool {
-    path.file_name().is_some_and(|name| name == SAMPLES)
 }
 
 /// Name of a recording: its file's, of a run its folder's.

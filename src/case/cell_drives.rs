@@ -7,9 +7,9 @@ use std::path::Path;
 
 use super::arm::{channels, check_currents, misfit, predicted};
 use super::arm_recording::{ArmLog, read_log_of};
-use super::cell::is_run;
 use super::diagnosed::{DRIVES, Diagnosed, IDENTIFIED, IMPROVED_ARM};
 use super::error::CaseError;
+use super::recordings::is_run;
 use crate::diagnosis::answer::details::ChannelNoise;
 use crate::diagnosis::answer::{Answer, Extent, Verdict};
 use crate::diagnosis::arm::drives::drives_text;

@@ -75,3 +75,11 @@ pub fn shown_columns(
         .map(|(_, (column, values))| (column, values.as_slice()))
         .collect()
 }
+
+/// The samples of a run.
+pub(super) const SAMPLES: &str = "samples.parquet";
+
+/// Whether a file holds the samples of a run.
+pub(super) fn is_run(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| name == SAMPLES)
+}

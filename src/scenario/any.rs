@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use super::bench::{self, BenchScenario};
-use super::cell::Scenario;
 use super::file::{Kind, KindOnly, SCHEMA};
 use super::load::from_document;
 use super::sections::{bench_sections, scenario_sections};
+use super::whole_cell::Scenario;
 use crate::keys::document::{Document, location_of_key, read_text};
 use crate::keys::error::{Location, ScenarioError};
 use crate::keys::suggestion::Sections;

@@ -28,6 +28,7 @@ mod tests;
 mod toleranced;
 mod tool;
 mod variation;
+mod whole_cell;
 mod workpiece;
 
 pub use crate::keys::error::ScenarioError;
@@ -35,10 +36,10 @@ pub use any::{AnyScenario, keys_given, load, load_any, load_bench, location_of};
 pub use assumed::AssumedValue;
 pub use bench::BenchScenario;
 pub use cell::{
-    ArmScenario, BurrScenario, ChamferScenario, CollisionScenario, DeviceScenario, Direction,
-    DriveScenario, EdgeChoice, EdgeSelection, Expectation, FeedFollows, FeedMeasure, LimitOverride,
-    Misplacement, Obstacle, ObstacleShape, PassScenario, ProcessScenario, RemovalScenario,
-    Scenario, ServoScenario, SimulationScenario, ToolScenario, WorkpieceScenario,
+    BurrScenario, ChamferScenario, CollisionScenario, DeviceScenario, Direction, DriveScenario,
+    EdgeChoice, EdgeSelection, Expectation, FeedFollows, FeedMeasure, LimitOverride, Misplacement,
+    Obstacle, ObstacleShape, PassScenario, ProcessScenario, RemovalScenario, ServoScenario,
+    SimulationScenario, ToolScenario, WorkpieceScenario,
 };
 pub use cell_files::files_of_cell;
 pub use controller::{ControllerScenario, ForceLaw, attainable_set_pressure};
@@ -47,3 +48,4 @@ pub use effect_request::EffectRequest;
 pub use recorded_cell::{RecordedCell, load_recorded_cell};
 pub use sensing::largest_set_pressure;
 pub use variation::{KeyValue, ScenarioTemplate, led_to, listed};
+pub use whole_cell::{ArmScenario, Scenario};
