@@ -51,7 +51,7 @@ pub(super) struct CellDrives {
 }
 
 impl CellDrives {
-    /// Of recordings by name and file; none where the cell names no arm file, or nothing of it was recorded.
+    /// Of recordings by name and file; none where the cell names no arm file.
     pub fn read(
         cell: &LoadedCell,
         known: &[(&str, &Path)],

@@ -97,3 +97,47 @@ impl Add for OutsideWrench {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::dynamics::{LinkState, add_outside_wrench, link_states};
+    use crate::arm::kinematics::{link_poses, point_force_torques};
+    use crate::arm::test_chains::random_chain;
+    use glam::DQuat;
+
+    /// By virtual work in the world: what a force at a point asks of the joints.
+    #[test]
+    fn a_force_at_a_point_takes_from_the_joints_what_virtual_work_says() {
+        let chain = random_chain(7, 6);
+        let q = [0.3, -0.8, 0.5, 1.1, -0.4, 0.9];
+        let still = [0.0; 6];
+        let (point, force) = (DVec3::new(0.03, -0.05, 0.2), DVec3::new(40.0, -70.0, 90.0));
+        let mut poses = [DPose3::IDENTITY; 6];
+        link_poses(&chain, DPose3::IDENTITY, &q, &mut poses);
+        let flange = poses[5] * chain.tip_from_last;
+        let mut expected = [0.0; 6];
+        let at = flange.transform_point(point);
+        point_force_torques(&chain, &poses, at, flange.rotation * force, &mut expected);
+        let outside = Outside {
+            wrench: vec![OutsideWrench::at(DVec3::ZERO, force)],
+            drag: vec![OutsideWrench::ZERO],
+        };
+        // The point is where an error of it says.
+        let error = OutsideError { point, drag: 0.3 };
+        let own = outside.at(0, &error).seen_from(&chain.tip_from_last);
+        let mut links = [LinkState::AT_REST; 6];
+        link_states(
+            &chain,
+            DQuat::IDENTITY,
+            DVec3::ZERO,
+            [&q, &still, &still],
+            &mut links,
+        );
+        let mut out = [0.0; 6];
+        add_outside_wrench(&chain, &links, (own.force, own.moment), &mut out);
+        for (taken, expected) in out.iter().zip(expected) {
+            assert!((taken + expected).abs() < 1e-9, "{out:?} {expected:?}");
+        }
+    }
+}
