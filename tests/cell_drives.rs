@@ -337,6 +337,14 @@ fn a_part_that_is_misplaced_and_friction_of_a_drive_are_both_named() {
         (dry.value - COULOMB[1] - planted.friction).abs() < 1.0,
         "{dry:?}"
     );
+    // What either side says is in the account: of two parts of one kind the second was lost.
+    let account = std::fs::read_to_string(bench.path("out/account.txt")).unwrap();
+    for said in [
+        "Of device, part and contact:",
+        "Of the arm, its load and its sensor:",
+    ] {
+        assert!(account.contains(said), "{said}: {account}");
+    }
     // What is written is a cell again, with the arm beside it.
     let improved = load_recorded_cell(&bench.path("out/improved.toml")).unwrap();
     let arm = improved.arm.recorded_arm.unwrap();

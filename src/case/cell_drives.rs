@@ -16,6 +16,7 @@ use crate::diagnosis::arm::drives::drives_text;
 use crate::diagnosis::arm::input::{ArmInput, ArmRecording};
 use crate::diagnosis::arm::{ArmDiagnosis, diagnose};
 use crate::diagnosis::difference::comparison::{Compared, ComparedChannel, Comparison};
+use crate::diagnosis::search::progress::Observer;
 use crate::plant::{ArmTrajectory, PlantInputs, PlantParameters, simulate};
 use crate::recorded_arm::device_mount::DeviceMount;
 use crate::recorded_arm::motion::{Motion, every, sample_time};
@@ -129,6 +130,7 @@ impl CellDrives {
         diagnosed: &mut Diagnosed,
         cell: &LoadedCell,
         (plant, known, unseen): (&PlantParameters, &[&PlantInputs], Option<&PlantInputs>),
+        observer: &mut Observer<'_>,
     ) -> Result<(), CaseError> {
         let mut nominal = self.nominal();
         for (drive, offset) in nominal.drives.iter_mut().zip(plant.cell.encoder_offset) {
@@ -150,7 +152,7 @@ impl CellDrives {
         let unseen = unseen.map(|both| of((whole.len(), both)));
         let mut input = self.input(whole.iter().map(thinned).collect());
         input.nominal = nominal;
-        let found = diagnose(&input, &mut |_| {});
+        let found = diagnose(&input, observer);
         input.recordings = whole;
         self.report(diagnosed, &input, found, unseen.as_ref())
     }
@@ -383,6 +385,10 @@ fn add_misfits(answer: &mut Answer, comparison: &Comparison, input: &ArmInput) {
     }
 }
 
+/// What a part of an account says which of: the device's side, the arm's.
+const OF_DEVICE: &str = "Of device, part and contact:";
+const OF_ARM: &str = "Of the arm, its load and its sensor:";
+
 /// The answer on an arm, beside that on device, part and contact.
 fn add_answer(answer: &mut Answer, arm: Answer) {
     answer.verdict = match (answer.verdict, arm.verdict) {
@@ -394,6 +400,7 @@ fn add_answer(answer: &mut Answer, arm: Answer) {
         answer.explained = arm.explained;
     }
     let finds_nothing = answer.effects.is_empty();
+    let lacks = !arm.effects.is_empty();
     answer.effects.extend(arm.effects);
     answer.alternatives.extend(arm.alternatives);
     answer.mismatch.extend(arm.mismatch);
@@ -401,10 +408,10 @@ fn add_answer(answer: &mut Answer, arm: Answer) {
     let found = arm.details.account;
     if finds_nothing {
         own.headline = found.headline;
-    } else if !answer.effects.is_empty() {
-        own.headline += &format!("; arm and wrench sensor: {}", found.headline);
+    } else if lacks {
+        own.headline += &format!("; of arm and sensor {}", found.headline);
     }
     for section in found.sections {
-        own.add(section.kind, section.paragraphs);
+        own.add_to(section.kind, [OF_DEVICE, OF_ARM], section.paragraphs);
     }
 }

@@ -346,7 +346,7 @@ pub fn diagnose(
                     .map(|own| &own.recorded.inputs)
                     .collect();
                 let unseen = read.input.unseen.as_ref().map(|own| &own.recorded.inputs);
-                arm.add_to(&mut diagnosed, cell, (&plant, &known, unseen))?;
+                arm.add_to(&mut diagnosed, cell, (&plant, &known, unseen), observer)?;
             }
             diagnosed
         }

@@ -96,6 +96,20 @@ impl Account {
         }
     }
 
+    /// Adds to a part, with words on which of two subjects each paragraph is of; a part of its own where there is none of that kind.
+    pub fn add_to(&mut self, kind: SectionKind, [of_own, of_added]: [&str; 2], added: Vec<String>) {
+        let of = |section: &&mut AccountSection| section.kind == kind;
+        match self.sections.iter_mut().find(of) {
+            Some(section) if !added.is_empty() => {
+                section.paragraphs.insert(0, of_own.to_owned());
+                section.paragraphs.push(of_added.to_owned());
+                section.paragraphs.extend(added);
+            }
+            Some(_) => {}
+            None => self.add(kind, added),
+        }
+    }
+
     /// Adds a remark on the recordings and on what became of them.
     pub fn remark(&mut self, sentence: &str) {
         let paragraph = format!("{sentence}.");
