@@ -333,6 +333,44 @@ fn a_clock_that_is_off_by_what_nobody_knows_is_set_right() {
     assert!(worst < 2e-5, "{worst}");
 }
 
+/// Two loggers of one motion, the second's clock ahead or behind: `clock_offset_s` is added to its stamps, so that what happens at once is at one time in the
+/// recording. Of the wrong sign the stroke would lie twice the offset off the force.
+#[test]
+fn a_clock_offset_that_is_given_is_added_to_the_stamps() {
+    for offset in [0.35, -0.2] {
+        let folder = Folder::new();
+        let trajectory = |t: f64| (-(t - 1.4f64).powi(2) / 0.01).exp();
+        files::text(&folder.path("force.csv"), "", |row| {
+            let time = truth(row).time;
+            format!("{time},{}", 80.0 * trajectory(time))
+        });
+        // What it stamps with s happened at s + offset.
+        files::text(&folder.path("stroke.csv"), "", |row| {
+            let time = 1.0 + 0.0017 * row as f64;
+            format!("{},{}", time - offset, 5.0 * trajectory(time))
+        });
+        let time = "form = \"text\"\ntime = { column = 1, unit = \"s\" }\n";
+        folder.write(
+            "map.toml",
+            format!(
+                "schema = 1\ntitle = \"Two clocks\"\n[[file]]\n{time}{}[[file]]\nclock_offset_s = {offset}\n{time}{}",
+                channel("force", "2", "N"),
+                channel("stroke", "2", "mm")
+            ),
+        );
+        let (stored, _) = folder.imported("map.toml", &["force.csv", "stroke.csv"]);
+        let stroke = stored.recording.values("stroke").unwrap();
+        let both = stored.recording.time().iter().zip(stroke);
+        let off = both.filter(|(_, stroke)| stroke.is_finite());
+        let worst = off.map(|(t, stroke)| (stroke - 5e-3 * trajectory(*t)).abs());
+        let (count, worst) = worst.fold((0, 0.0f64), |(n, most), off| (n + 1, most.max(off)));
+        assert!(
+            count > ROWS / 3 && worst < 2e-5,
+            "{offset}: {count} samples, {worst}"
+        );
+    }
+}
+
 /// A map and logs that the other tests write for themselves.
 fn plain(folder: &Folder, names: &[&str]) {
     for name in names {

@@ -412,3 +412,41 @@ fn a_tool_that_comes_worn_goes_on_from_there() {
     let ratio = old.volume() / new.volume();
     assert!((ratio / (-0.7f64).exp() - 1.0).abs() < 1e-2, "{ratio}");
 }
+
+/// The wear is the work of force and speed: 60 N at 8 m/s for as long as the tool presses, and what force and speed of the recording add up to, at half the speed half
+/// of it. A wear that grew by force and time alone would be an eighth.
+#[test]
+fn a_tool_wears_by_force_times_speed_times_time() {
+    let at = |speed: f64| {
+        let mut cell = belt();
+        cell.tool.as_mut().unwrap().tool.shape = ToolShape::Belt { wheel_radius: 0.02 };
+        cell.tool.as_mut().unwrap().spindle.free_speed = speed / 0.02;
+        done(cell)
+    };
+    let worn = |run: &Done| *run.of(schema::TOOL_WEAR).last().unwrap();
+    let fast = at(SPEED);
+    let (force, speed) = (
+        fast.of(schema::CONTACT_FORCE),
+        fast.of(schema::CUTTING_SPEED),
+    );
+    let work: f64 = (fast.recording.time().windows(2).enumerate())
+        .map(|(i, t)| (t[1] - t[0]) * force[i + 1] * speed[i + 1])
+        .sum();
+    assert!(
+        (worn(&fast) / work - 1.0).abs() < 0.01,
+        "{} {work}",
+        worn(&fast)
+    );
+    let span = fast.recording.phase("follow").unwrap();
+    let samples = fast.recording.samples_in(span);
+    let time = fast.recording.time();
+    let follow = time[samples.end - 1] - time[samples.start];
+    let nominal = 60.0 * SPEED * follow;
+    assert!(
+        (worn(&fast) / nominal - 1.0).abs() < 0.03,
+        "{} {nominal}",
+        worn(&fast)
+    );
+    let ratio = worn(&at(0.5 * SPEED)) / worn(&fast);
+    assert!((ratio - 0.5).abs() < 0.01, "{ratio}");
+}

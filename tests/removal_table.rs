@@ -196,3 +196,46 @@ fn tables_that_cannot_be_are_refused_with_one_line_and_nothing_is_written() {
     let furlong = FILE.replace("unit = \"N\"", "unit = \"lbf\"");
     refused(&furlong, &rows, &["force.unit", "lbf", "N, kN"]);
 }
+
+/// A table whose wear adds up from row to row as force x time x speed: the planted wear per work comes back. Added up without the speed, or beginning with the row's
+/// own work, it would be another number; and a nominal law that has it leaves nothing.
+#[test]
+fn wear_that_is_cumulated_grows_by_force_times_time_times_speed() {
+    let rate = 2e-5;
+    let mut state = 11u64;
+    let mut uniform = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    let mut rows = String::from("force_n,time_s,speed_m_s,removed_mm3\n");
+    let mut work = 0.0;
+    for _ in 0..60 {
+        let (force, time) = (20.0 + 40.0 * uniform(), 2.0 + 6.0 * uniform());
+        let speed = 2.0 + 18.0 * uniform();
+        let normal: f64 = (0..12).map(|_| uniform()).sum::<f64>() - 6.0;
+        let volume = 0.02 * force * time * speed * (-rate * work + 0.02 * normal).exp();
+        let _ = writeln!(rows, "{force:.4},{time:.4},{speed:.4},{volume:.6}");
+        work += force * time * speed;
+    }
+    assert!(rate * work > 1.0 && rate * work < 4.0, "{}", rate * work);
+    let columns = r#"force = { name = "force_n", unit = "N" }
+time = { name = "time_s", unit = "s" }
+speed = { name = "speed_m_s" }
+cumulate_wear = true
+volume = { name = "removed_mm3", unit = "mm3" }
+"#;
+    let (head, _) = FILE.split_once("force =").unwrap();
+    let file = format!("{head}{columns}\n[believed]\nlaw = \"preston\"\n");
+    let bench = bench(&rows);
+    bench.write("case/rig.toml", file.clone());
+    let answer = diagnosed(&bench, "case");
+    assert_eq!(names(&answer), ["tool_wear"]);
+    let wear = &answer["effects"][0]["parameters"]["wear_rate"];
+    let [value, low, high] = ["value", "low", "high"].map(|key| wear[key].as_f64().unwrap());
+    assert!((value / rate - 1.0).abs() < 0.05, "{wear}");
+    assert!(low < rate && rate < high, "{wear}");
+    bench.write("case/rig.toml", file + &format!("wear_rate = {rate}\n"));
+    assert_eq!(diagnosed(&bench, "case")["verdict"], "nothing_missing");
+}

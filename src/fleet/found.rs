@@ -483,3 +483,6 @@ fn unlike(devices: &[DeviceFound]) -> Vec<(String, String)> {
     }
     found
 }
+
+#[cfg(test)]
+mod tests;

@@ -144,3 +144,57 @@ pub const UNITS: &[Unit] = &[
     // Of columns alone.
     Unit { of_keys: false, ..keys("m3/s", "m3_per_s", "m3/s", Divide(1.0)) }, Unit { of_keys: false, ..keys("J", "j", "J", Divide(1.0)) },
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A value in a unit and what it is in SI, from handbooks (NIST SP 811; DIN 1343; UNIX, Windows, .NET, Excel, MATLAB and LabVIEW epochs), in whole numbers of
+    /// everyday things rather than the factors above.
+    #[rustfmt::skip] // A table.
+    const WORTH: &[(&str, f64, f64)] = &[
+        ("s", 3.0, 3.0), ("ms", 250.0, 0.25), ("us", 40.0, 4e-5), ("ns", 7.0, 7e-9), ("min", 1.5, 90.0), ("h", 2.0, 7200.0), ("d", 1.0, 86_400.0), ("100ns", 10.0, 1e-6),
+        // Midnight of 2000-01-01 UTC is 946 684 800 s in each epoch.
+        ("filetime", 125_911_584_000_000_000.0, 946_684_800.0), ("dotnet_ticks", 630_822_816_000_000_000.0, 946_684_800.0),
+        ("excel_days", 36_526.0, 946_684_800.0), ("excel_microdays", 36_526e6, 946_684_800.0), ("matlab_days", 730_486.0, 946_684_800.0), ("labview_s", 3_029_529_600.0, 946_684_800.0),
+        ("m", 2.0, 2.0), ("mm", 25.0, 0.025), ("cm", 50.0, 0.5), ("um", 900.0, 9e-4), ("in", 2.0, 0.0508), ("ft", 10.0, 3.048),
+        ("m/s", 4.0, 4.0), ("mm/s", 40.0, 0.04), ("m/min", 30.0, 0.5), ("mm/min", 600.0, 0.01), ("in/s", 10.0, 0.254), ("m/s2", 1.0, 1.0), ("mm/s2", 500.0, 0.5), ("g", 2.0, 19.6133),
+        ("N", 5.0, 5.0), ("kN", 0.5, 500.0), ("mN", 200.0, 0.2), ("lbf", 10.0, 44.482_216_152_605), ("kgf", 50.0, 490.3325), ("daN", 49.0, 490.0), ("cN", 100.0, 1.0), ("gf", 1000.0, 9.80665),
+        ("N m", 3.0, 3.0), ("N mm", 1500.0, 1.5), ("lbf in", 100.0, 11.298_482_902_761_67),
+        ("Pa", 7.0, 7.0), ("hPa", 1013.25, 101_325.0), ("kPa", 600.0, 6e5), ("MPa", 0.6, 6e5), ("mbar", 500.0, 5e4), ("bar", 6.0, 6e5), ("psi", 100.0, 689_475.729_316_8),
+        ("atm", 1.0, 101_325.0), ("kgf/cm2", 1.0, 98_066.5), ("mmHg", 760.0, 101_325.0), ("inHg", 29.92, 101_320.6), ("torr", 760.0, 101_325.0), ("kg", 2.0, 2.0),
+        // 60 normal litres a minute are one a second, 22.414 of which are a mole of air of 28.96 g.
+        ("kg/s", 1.0, 1.0), ("g/s", 3.0, 3e-3), ("Nl/min", 60.0, 28.96e-3 / 22.414),
+        ("K", 300.0, 300.0), ("degC", 20.0, 293.15), ("degF", 68.0, 293.15), ("V", 5.0, 5.0), ("mV", 300.0, 0.3), ("A", 2.0, 2.0), ("mA", 20.0, 0.02),
+        ("rad", 1.0, 1.0), ("mrad", 5.0, 5e-3), ("deg", 180.0, PI), ("rad/s", 1.0, 1.0), ("deg/s", 360.0, 2.0 * PI), ("rpm", 3000.0, 100.0 * PI), ("1", 0.5, 0.5), ("%", 12.0, 0.12),
+    ];
+
+    #[test]
+    fn each_unit_of_a_log_is_worth_what_handbooks_say() {
+        let of_logs = UNITS.iter().filter(|unit| unit.of_logs);
+        for unit in of_logs {
+            let row = WORTH.iter().find(|(symbol, ..)| *symbol == unit.symbol);
+            let Some((symbol, value, si)) = row else {
+                panic!("`{}` has no row here", unit.symbol);
+            };
+            let found = (value + unit.zero) * unit.conversion.factor();
+            // 760 mm of mercury are an atmosphere to 1.5e-7, molar masses have four digits.
+            let within = match *symbol {
+                "Nl/min" => 1e-3,
+                "inHg" => 1e-5,
+                _ => 2e-7,
+            };
+            assert!((found / si - 1.0).abs() < within, "{symbol}: {found}, {si}");
+        }
+    }
+
+    #[test]
+    fn a_key_and_a_log_of_one_unit_are_worth_the_same() {
+        for unit in UNITS.iter().filter(|unit| unit.of_keys) {
+            let twins = UNITS.iter().filter(|other| other.symbol == unit.symbol);
+            for twin in twins {
+                assert!((twin.conversion.factor() / unit.conversion.factor() - 1.0).abs() < 1e-15);
+            }
+        }
+    }
+}

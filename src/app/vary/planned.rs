@@ -176,3 +176,71 @@ impl Files {
         Ok(file)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A run is named by all that it depends on: two sweeps that differ in what `--with` fixes, and in nothing else, share no run.
+    #[test]
+    fn a_run_of_another_program_file_fixed_value_or_own_value_has_another_name() {
+        let head = |program: &str| Head {
+            plan: KIND.to_owned(),
+            program: program.to_owned(),
+            tasks: 1,
+            work: serde_json::Value::Null,
+            files: Vec::new(),
+        };
+        let shared = |fixed: &[(&str, &str)], key: &str| Shared {
+            scenario: "cell.toml".to_owned(),
+            fixed: (fixed.iter())
+                .map(|(key, value)| ((*key).to_owned(), (*value).to_owned()))
+                .collect(),
+            keys: vec![key.to_owned()],
+        };
+        let file = |bytes: &[u8]| SourceFile::holding("cell.toml", bytes);
+        let plain = shared(&[("external_leak", "0.5")], "process.force_n");
+        let own = [file(b"a")];
+        let of = |program, shared: &Shared, value: &str, files: &[SourceFile]| {
+            name(&head(program), shared, &[value.to_owned()], files)
+        };
+        let names = [
+            of("idc 1", &plain, "60", &own),
+            of("idc 2", &plain, "60", &own),
+            of("idc 1", &plain, "61", &own),
+            of("idc 1", &plain, "60", &[file(b"b")]),
+            of("idc 1", &plain, "60", &[file(b"a"), file(b"a")]),
+            of("idc 1", &shared(&[], "process.force_n"), "60", &own),
+            of(
+                "idc 1",
+                &shared(&[("external_leak", "0.6")], "process.force_n"),
+                "60",
+                &own,
+            ),
+            of(
+                "idc 1",
+                &shared(&[("stick_slip", "0.5")], "process.force_n"),
+                "60",
+                &own,
+            ),
+            of(
+                "idc 1",
+                &shared(&[("external_leak", "0.5")], "process.feed"),
+                "60",
+                &own,
+            ),
+            // Fixed and varied are told apart.
+            of(
+                "idc 1",
+                &shared(&[("process.force_n", "60")], "external_leak"),
+                "0.5",
+                &own,
+            ),
+        ];
+        for (place, one) in names.iter().enumerate() {
+            let twin = names[place + 1..].iter().position(|other| other == one);
+            assert_eq!(twin, None, "name {place}");
+        }
+        assert_eq!(names[0], of("idc 1", &plain, "60", &own));
+    }
+}

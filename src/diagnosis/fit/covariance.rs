@@ -88,3 +88,64 @@ fn inverse(information: &DMatrix<f64>) -> DMatrix<f64> {
         .map_or_else(|| DMatrix::identity(count, count), |c| c.inverse());
     DMatrix::from_fn(count, count, |i, j| inverse[(i, j)] * scale[i] * scale[j])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::test_evidence::{evidence, fit};
+    use crate::plant::CHANNELS;
+
+    /// Samples in each block of a quarter of a second, of half a second every 4 ms: 63, 62 and the last one.
+    const BLOCKS: [f64; 3] = [63.0, 62.0, 1.0];
+    const DERIVATIVE: f64 = 0.2;
+
+    /// Residuals of one deviation that keep their sign for a block: each block counts as one residual of all its samples, so that the variance is the sum over
+    /// blocks of (c n r)^2 over the square of the information n c^2, 50 times that of white ones.
+    #[test]
+    fn residuals_that_keep_their_sign_for_a_block_count_as_one() {
+        let evidence = evidence(1);
+        let samples = evidence.recordings[0].inputs.time.len();
+        let count = CHANNELS.len() * samples;
+        let channels = CHANNELS.len() as f64;
+        let found = covariance(
+            &evidence,
+            &fit(vec![1.0; count], vec![DERIVATIVE; count], 0.0),
+        )[(0, 0)];
+        let information = DERIVATIVE * DERIVATIVE * count as f64;
+        let gradients = BLOCKS.map(|of| (DERIVATIVE * channels * of).powi(2));
+        let expected = gradients.iter().sum::<f64>() / information.powi(2);
+        assert!((found / expected - 1.0).abs() < 1e-6, "{found}, {expected}");
+        assert!(found > 50.0 / information, "{found}");
+    }
+
+    /// Residuals of alternating sign cancel in every block: less than the variance of white noise is not trusted.
+    #[test]
+    fn residuals_that_cancel_leave_the_variance_of_white_noise() {
+        let evidence = evidence(1);
+        let samples = evidence.recordings[0].inputs.time.len();
+        let count = CHANNELS.len() * samples;
+        let alternating = (0..count).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 });
+        let found = covariance(
+            &evidence,
+            &fit(alternating.collect(), vec![DERIVATIVE; count], 0.0),
+        )[(0, 0)];
+        let white = 1.0 / (DERIVATIVE * DERIVATIVE * count as f64);
+        assert!((found / white - 1.0).abs() < 1e-6, "{found}, {white}");
+    }
+
+    /// Blocks end with their recording: two recordings of opposite residuals do not cancel.
+    #[test]
+    fn a_block_is_of_one_recording() {
+        let evidence = evidence(2);
+        let samples = evidence.recordings[0].inputs.time.len();
+        let half = CHANNELS.len() * samples;
+        let mut residuals = vec![1.0; half];
+        residuals.extend(vec![-1.0; half]);
+        let found = covariance(&evidence, &fit(residuals, vec![DERIVATIVE; 2 * half], 0.0))[(0, 0)];
+        let channels = CHANNELS.len() as f64;
+        let gradients = BLOCKS.map(|of| 2.0 * (DERIVATIVE * channels * of).powi(2));
+        let information = DERIVATIVE * DERIVATIVE * (2 * half) as f64;
+        let expected = gradients.iter().sum::<f64>() / information.powi(2);
+        assert!((found / expected - 1.0).abs() < 1e-6, "{found}, {expected}");
+    }
+}

@@ -253,4 +253,42 @@ mod tests {
         assert!((values[0][0] - 4.0).abs() < 1e-3, "{values:?}");
         assert!((values[1][0] - 6.0).abs() < 1e-3, "{values:?}");
     }
+
+    /// Two recordings of surfaces a millimetre apart: fitted to one alone the surface is where that one has it. A recording that stayed in the fit that is to
+    /// predict it would draw the surface to the middle, and predict itself better than it is predicted.
+    #[test]
+    fn a_refit_knows_nothing_of_the_recording_that_it_predicts() {
+        let surfaces = [0.0, 1e-3];
+        let recorded = surfaces.map(|surface| {
+            let mut truth = crate::diagnosis::test_evidence::plant();
+            truth.contact.surface_offset = surface;
+            crate::diagnosis::test_evidence::evidence_of(&truth, vec![vec![2e5; 126]]).recordings
+        });
+        let noise = crate::diagnosis::test_evidence::evidence(1).noise;
+        let evidence = Evidence::new(recorded.concat(), noise);
+        let quantity = Free {
+            coordinate: crate::effects::Coordinate::Linear(1e-3),
+            bounds: [-0.01, 0.01],
+            ..free()
+        };
+        let start = (&crate::diagnosis::test_evidence::plant(), None);
+        let stages = crate::diagnosis::fit::FINEST;
+        let limit = crate::diagnosis::fit::Limit::FULL;
+        let whole = crate::diagnosis::fit::fit(&evidence, start, (&[quantity], &[]), stages, limit);
+        let left = left_out(&evidence, &whole, Depth::Refit(Refit::FINEST)).unwrap();
+        assert!((left.values[0][0] - 1e-3).abs() < 2e-5, "{:?}", left.values);
+        assert!(left.values[1][0].abs() < 2e-5, "{:?}", left.values);
+        // What is predicted is the recording that was left out: it lies a millimetre off, in stroke or force.
+        let largest = |recording: usize| {
+            let residuals = left.residuals[recording].iter().flatten();
+            residuals.fold(0.0, |most: f64, r| most.max(r.abs()))
+        };
+        assert!(largest(0) > 10.0 && largest(1) > 10.0);
+        let none = left_out(
+            &evidence.of_those(|i| i == 0),
+            &whole,
+            Depth::Refit(Refit::FINEST),
+        );
+        assert!(none.is_none(), "one recording has no others");
+    }
 }
