@@ -2,6 +2,7 @@
 //!
 //! Data flows one way: scenario -> cell -> simulation -> recording -> metrics -> report.
 //!
+//! - [`file`]: files opened for reading: regular ones alone, up to a limit
 //! - [`listed`]: enums whose variants are listed and named
 //! - [`unit`]: units, each declared once
 //! - [`stats`]: median, quantiles, distributions: one rule for each
@@ -77,6 +78,7 @@ pub mod estimation;
 pub mod excitation;
 #[cfg(feature = "cli")]
 pub mod figure;
+pub mod file;
 pub mod flange;
 pub mod fleet;
 #[cfg(feature = "import")]

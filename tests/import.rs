@@ -4,6 +4,7 @@ mod bags;
 mod dialects;
 pub mod files;
 mod forms;
+mod hostile;
 mod kinds;
 mod real;
 mod refused;

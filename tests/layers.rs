@@ -327,3 +327,27 @@ fn the_checkers_see_what_they_look_for() {
     );
     assert_eq!(rows, [["a", "b, c"]]);
 }
+
+#[test]
+fn files_are_opened_for_reading_by_one_module() {
+    for (file, tokens) in crate::source::sources() {
+        if file.starts_with("file/") {
+            continue;
+        }
+        for four in tokens.windows(4) {
+            let words: Vec<&str> = four.iter().map(|token| token.text.as_str()).collect();
+            let opens = match words[..] {
+                ["fs", "::", what, "("] => ["read", "read_to_string"].contains(&what),
+                ["File", "::", what, "("] => ["open", "options"].contains(&what),
+                [_, _, what, "("] => what == "from_path",
+                _ => false,
+            };
+            assert!(
+                !opens,
+                "src/{file}:{}: `{}`, expected a function of `src/file/`, which neither waits for a pipe nor reads without end",
+                four[0].line,
+                words.concat()
+            );
+        }
+    }
+}

@@ -26,6 +26,9 @@ pub struct Cli {
     /// When to print in colours.
     #[command(flatten)]
     pub colour: colorchoice_clap::Color,
+    /// Largest file that is read, and what one may come to unpacked, in place of the usual limits [MB].
+    #[arg(long, global = true, value_name = "MB", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    largest_mb: Option<u64>,
 }
 
 #[derive(Debug, Subcommand)]
@@ -121,6 +124,9 @@ struct DesignArguments {
 /// # Errors
 /// One message that names file, key or waypoint and what was expected.
 pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
+    if let Some(megabytes) = cli.largest_mb {
+        crate::file::raise(megabytes);
+    }
     match &cli.command {
         Command::Run(arguments) => super::run::run(arguments),
         Command::Vary(arguments) => super::vary::run(arguments),

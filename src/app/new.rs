@@ -203,7 +203,8 @@ pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
         None => (files, String::new()),
     };
     // All are looked at before the first is written. What stands there as it would be written can stay.
-    let stays = |path: &Path, content: &[u8]| std::fs::read(path).is_ok_and(|old| old == content);
+    let stays =
+        |path: &Path, content: &[u8]| crate::file::read(path).is_ok_and(|old| old == content);
     let mut written = Vec::new();
     for (path, content) in &files {
         if !stays(path, content) || *path == file {

@@ -127,7 +127,7 @@ pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
 
 /// The page of a run, from its folder.
 fn run_page(folder: &Path) -> Result<String, AppError> {
-    let picture = |name: &str| std::fs::read_to_string(folder.join(name)).ok();
+    let picture = |name: &str| crate::file::read_text(folder.join(name)).ok();
     // A bench has none, nor has a run of an older version.
     let space = folder.join(DRAWING);
     let profile = folder.join(EDGE_PROFILE);
@@ -153,7 +153,7 @@ pub(super) fn read_samples(folder: &Path) -> Result<Recording, AppError> {
 }
 
 pub(super) fn read_json<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T, AppError> {
-    let text = std::fs::read_to_string(path).map_err(|e| RecordingError::read(path, e))?;
+    let text = crate::file::read_text(path).map_err(|e| RecordingError::read(path, e))?;
     let read = serde_json::from_str(&text);
     Ok(read.map_err(|e| RecordingError::read(path, e))?)
 }

@@ -9,8 +9,10 @@ use std::path::Path;
 use super::error::ImportError;
 use super::map::FileMap;
 use super::rows::{Remark, Rows};
+use crate::file::Limit;
 
 mod definition;
+mod extent;
 mod field;
 pub(super) mod glance;
 mod listed;
@@ -27,7 +29,7 @@ use topic::topics;
 
 /// Reads the topics that a map's channels name, the first channel's first.
 pub(super) fn read(path: &Path, map: &FileMap) -> Result<Vec<Rows>, ImportError> {
-    let stores = open(path)?;
+    let stores = open(path, map.limit)?;
     let scan = Scan::of(&stores);
     let mut remarks = stores.notes.clone();
     remarks.extend(missing(path, map, &stores)?);
@@ -92,8 +94,8 @@ fn missing(path: &Path, map: &FileMap, stores: &Stores) -> Result<Option<Remark>
     })
 }
 
-fn open(path: &Path) -> Result<Stores, ImportError> {
-    Stores::open(path).map_err(|cause| ImportError::Read {
+fn open(path: &Path, limit: Limit) -> Result<Stores, ImportError> {
+    Stores::open(path, limit).map_err(|cause| ImportError::Read {
         file: path.to_owned(),
         cause,
     })

@@ -47,7 +47,7 @@ pub fn is_known(name: &str) -> bool {
 /// The text of a log in the encoding of its map, or in that which its bytes tell; and which that is.
 pub(super) fn decode(
     path: &Path,
-    bytes: &[u8],
+    bytes: Vec<u8>,
     given: Option<&str>,
 ) -> Result<(String, DetectedEncoding), ImportError> {
     let (encoding, detected) = match given.and_then(named) {
@@ -59,9 +59,18 @@ pub(super) fn decode(
                 is_certain: true,
             },
         ),
-        None => tell(path, bytes)?,
+        None => tell(path, &bytes)?,
     };
-    let (text, _, is_faulty) = encoding.decode(bytes);
+    let is_plain = encoding == UTF_8 && Encoding::for_bom(&bytes).is_none();
+    let bytes = match is_plain {
+        true => match String::from_utf8(bytes) {
+            // It is not copied.
+            Ok(text) => return Ok((text, detected)),
+            Err(faulty) => faulty.into_bytes(),
+        },
+        false => bytes,
+    };
+    let (text, _, is_faulty) = encoding.decode(&bytes);
     if is_faulty {
         let line = 1 + text.split('\u{fffd}').next().map_or(0, |before| {
             before.bytes().filter(|byte| *byte == b'\n').count()
@@ -197,7 +206,7 @@ mod tests {
     const TEXT: &str = "Zeit [s];Oberfläche [µm];Temp. [°C]\n0,001;12,5;20\n";
 
     fn detected(bytes: &[u8]) -> Result<(String, String), String> {
-        match decode(Path::new("log.csv"), bytes, None) {
+        match decode(Path::new("log.csv"), bytes.to_vec(), None) {
             Ok((text, detected)) => Ok((text, detected.name)),
             Err(error) => Err(error.to_string()),
         }
@@ -242,9 +251,9 @@ mod tests {
             assert!(said.contains("encoding = \"windows-1252\""), "{said}");
         }
         let cyrillic = b"\xc4\xe0\xe2\xeb";
-        let (text, _) = decode(Path::new("a"), cyrillic, Some("windows-1251")).unwrap();
+        let (text, _) = decode(Path::new("a"), cyrillic.to_vec(), Some("windows-1251")).unwrap();
         assert_eq!(text, "Давл");
-        let wrong = decode(Path::new("a"), b"a\n\xff\xfe\xfd", Some("utf-8")).unwrap_err();
+        let wrong = decode(Path::new("a"), b"a\n\xff\xfe\xfd".to_vec(), Some("utf-8")).unwrap_err();
         assert!(
             wrong
                 .to_string()

@@ -77,7 +77,8 @@ pub fn read_log(path: &Path, map: &FileMap) -> Result<Log, ImportError> {
         Form::Bag => bag::read(path, map)?,
         Form::Tdms => tdms_log::read(path, map)?,
         Form::Spreadsheet { sheet, text } => {
-            let content = spreadsheet::read(path, sheet.as_deref(), text.decimal_mark)?.text;
+            let content =
+                spreadsheet::read(path, sheet.as_deref(), text.decimal_mark, map.limit)?.text;
             vec![text::read_content(path, &content, text, map)?]
         }
     };

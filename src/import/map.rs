@@ -8,6 +8,7 @@ use std::path::PathBuf;
 
 use super::stamps::{self, DateOrder, TwoNumbers};
 use super::units::LogUnit;
+use crate::file::Limit;
 use crate::recording::Unit;
 
 /// Ending of a quantity whose pressure is above the atmosphere.
@@ -50,6 +51,8 @@ pub struct FileMap {
     pub dropped: [usize; 2],
     /// Whether the readable part of a log that is cut off is to be used.
     pub accepts_truncated: bool,
+    /// What it may come to when it is unpacked and read.
+    pub limit: Limit,
     /// Whether fewer than nine in ten of its rows may be used.
     pub accepts_unused_rows: bool,
     /// Marks that stand for no value.

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::map::{Clock, FileMap, Form, ImportMap, Missing, RowChoice};
+use crate::file::Limit;
 use crate::keys::check::Section;
 use crate::keys::document::{Document, read_text};
 use crate::scenario::ScenarioError;
@@ -86,6 +87,7 @@ fn file_map(
         form: form(&section, keys)?,
         dropped: [keys.drop_first_rows, keys.drop_last_rows],
         accepts_truncated: keys.accept_truncated.unwrap_or(false),
+        limit: Limit::of(keys.largest_megabytes.map(|megabytes| megabytes as u64)),
         accepts_unused_rows: keys.accept_unused_rows,
         missing: missing(&section, keys)?,
         rows: keys.rows.as_ref().map(|rows| RowChoice {

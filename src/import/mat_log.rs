@@ -17,6 +17,7 @@ use super::error::ImportError;
 use super::map::{Column, FileMap};
 use super::rows::{Remark, Rows, Times, places};
 use super::signature;
+use crate::file::{self, Limit, guarded};
 
 const HEADER: usize = 128;
 const TAG: usize = 8;
@@ -28,6 +29,9 @@ const COMPRESSED: u32 = 15;
 const CLASS: usize = 16;
 const INT32: u32 = 12;
 const DOUBLE: u8 = 6;
+/// Kind of an element that is an array, and classes of those that hold numbers.
+const MATRIX: u32 = 14;
+const NUMBERS: std::ops::RangeInclusive<u32> = 6..=15;
 
 /// A column of an array, with its name.
 struct NamedColumn {
@@ -52,8 +56,7 @@ pub(super) fn read(path: &Path, map: &FileMap) -> Result<Rows, ImportError> {
         cause,
     };
     signature::check(path, "mat5", "a MAT file of version 5 to 7")?;
-    let bytes = std::fs::read(path).map_err(|cause| fail(cause.to_string()))?;
-    let contents = contents(&bytes).map_err(fail)?;
+    let contents = opened(path, map.limit).map_err(fail)?;
     let names: Vec<String> = contents.columns.iter().map(|c| c.name.clone()).collect();
     let mut remarks = Vec::new();
     if contents.torn {
@@ -132,8 +135,7 @@ pub(super) fn columns(path: &Path) -> Result<Vec<(String, Vec<f64>)>, ImportErro
         file: path.to_owned(),
         cause,
     };
-    let bytes = std::fs::read(path).map_err(|cause| fail(cause.to_string()))?;
-    let contents = contents(&bytes).map_err(fail)?;
+    let contents = opened(path, Limit::default()).map_err(fail)?;
     if contents.columns.is_empty() {
         return Err(fail(format!(
             "none of its {} arrays is one of real numbers (structures, cells, texts, int64 are not read); in MATLAB, save(file, '-struct', 'log', '-v7') writes the fields of a structure `log` as arrays",
@@ -144,8 +146,13 @@ pub(super) fn columns(path: &Path) -> Result<Vec<(String, Vec<f64>)>, ImportErro
     Ok(columns.map(|column| (column.name, column.values)).collect())
 }
 
+fn opened(path: &Path, limit: Limit) -> Result<Contents, String> {
+    let bytes = file::read_up_to(path, limit.whole()).map_err(|cause| cause.to_string())?;
+    contents(&bytes, limit)
+}
+
 /// Tells a file's elements apart and reads them one by one.
-fn contents(bytes: &[u8]) -> Result<Contents, String> {
+fn contents(bytes: &[u8], limit: Limit) -> Result<Contents, String> {
     let is_hdf = bytes.starts_with(b"\x89HDF") || bytes.get(512..516) == Some(b"\x89HDF");
     if is_hdf || bytes.starts_with(b"MATLAB 7.3") {
         return Err(
@@ -164,6 +171,9 @@ fn contents(bytes: &[u8]) -> Result<Contents, String> {
         }
     };
     let header = &bytes[..HEADER];
+    let most = limit.unpacked(bytes.len() as u64);
+    let refusal = || limit.refusal(bytes.len() as u64, most);
+    let mut left = most;
     let mut found = Contents::default();
     let mut rest = &bytes[HEADER..];
     while !rest.is_empty() {
@@ -183,28 +193,113 @@ fn contents(bytes: &[u8]) -> Result<Contents, String> {
             length.next_multiple_of(8) - length
         };
         rest = after.get(padding..).unwrap_or_default();
-        let mut element = if kind == COMPRESSED {
-            let mut plain = Vec::new();
-            let read = ZlibDecoder::new(own).read_to_end(&mut plain);
+        // The array behind the header, as a file of its own.
+        let mut alone = header.to_vec();
+        if kind == COMPRESSED {
+            let unpacked = ZlibDecoder::new(own).take(left.saturating_add(1));
+            let read = { unpacked }.read_to_end(&mut alone);
             read.map_err(|cause| format!("an array in it is damaged: {cause}"))?;
-            plain
         } else {
-            [tag, own].concat()
-        };
-        if let Some(class) = element.get_mut(CLASS..CLASS + 4)
-            && number([class[0], class[1], class[2], class[3]]) & 0xff == INT32
-        {
-            let least = if number([1, 0, 0, 0]) == 1 { 0 } else { 3 };
-            class[least] = DOUBLE;
+            alone.extend_from_slice(tag);
+            alone.extend_from_slice(own);
         }
-        note(&[header, &element].concat(), &mut found);
+        let Some(array) = Array::of(&alone[HEADER..], number) else {
+            left = left
+                .checked_sub((alone.len() - HEADER) as u64)
+                .ok_or_else(refusal)?;
+            found.others += 1;
+            continue;
+        };
+        let held = (alone.len() - HEADER) as u64;
+        left = left.checked_sub(held.max(array.held)).ok_or_else(refusal)?;
+        // Nothing behind it is read as another.
+        alone.truncate(HEADER + array.length);
+        if array.class == INT32 {
+            let least = if number([1, 0, 0, 0]) == 1 { 0 } else { 3 };
+            alone[HEADER + CLASS + least] = DOUBLE;
+        }
+        note(alone, &mut found);
     }
     Ok(found)
 }
 
+/// What an element says of an array of numbers, before it is read.
+struct Array {
+    class: u32,
+    /// Bytes of the element with its tag.
+    length: usize,
+    /// Bytes that its numbers come to as doubles: few may be stored for each.
+    held: u64,
+}
+
+impl Array {
+    /// None of one that is none, or of no numbers.
+    fn of(element: &[u8], number: fn([u8; 4]) -> u32) -> Option<Self> {
+        let word = |from: usize| {
+            let bytes = element.get(from..from + 4)?;
+            Some(number([bytes[0], bytes[1], bytes[2], bytes[3]]))
+        };
+        let length = TAG.checked_add(word(4)? as usize)?;
+        let class = word(CLASS)? & 0xff;
+        let is_array = word(0)? == MATRIX && NUMBERS.contains(&class) && length <= element.len();
+        // Flags, dimensions and name stand before the numbers.
+        let mut at = TAG;
+        for _ in 0..3 {
+            at = tag_at(word(at)?, word(at + 4)?, at).next;
+        }
+        let mut held = 0;
+        // Real and imaginary ones.
+        while at < length && is_array {
+            let tag = tag_at(word(at)?, word(at + 4).unwrap_or(0), at);
+            held += 8 * (tag.bytes / size_of_kind(tag.kind)) as u64;
+            at = tag.next;
+        }
+        is_array.then_some(Self {
+            class,
+            length,
+            held,
+        })
+    }
+}
+
+/// Kind and length of what a tag stands before, and where the next one is.
+struct Tag {
+    kind: u32,
+    bytes: usize,
+    next: usize,
+}
+
+/// The tag of two words; few bytes have their length in the first, and stand in place of the second.
+fn tag_at(first: u32, second: u32, at: usize) -> Tag {
+    match first >> 16 {
+        0 => Tag {
+            kind: first,
+            bytes: second as usize,
+            next: at + TAG + (second as usize).next_multiple_of(8),
+        },
+        few => Tag {
+            kind: first & 0xffff,
+            bytes: few as usize,
+            next: at + TAG,
+        },
+    }
+}
+
+/// Bytes of a number as it is stored.
+fn size_of_kind(kind: u32) -> usize {
+    match kind {
+        3 | 4 => 2,
+        5..=7 => 4,
+        9 | 12 | 13 => 8,
+        _ => 1,
+    }
+}
+
 /// Notes the columns of the one array in a file.
-fn note(file: &[u8], found: &mut Contents) {
-    let read = MatFile::parse(file).ok();
+fn note(file: Vec<u8>, found: &mut Contents) {
+    let read = guarded(|| MatFile::parse(file.as_slice()).ok());
+    drop(file);
+    let read = read.ok().flatten();
     let Some(array) = read.as_ref().and_then(|file| file.arrays().first()) else {
         found.others += 1;
         return;

@@ -1,5 +1,6 @@
 //! Files and messages that are packed with gzip or zstd, unpacked up to a bound: few bytes may stand for any number of them.
 
+use std::cell::Cell;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -8,9 +9,9 @@ use zstd::stream::read::Decoder;
 
 use super::error::ImportError;
 use super::signature;
+use crate::file::{self, Limit};
 
-/// Bytes of a file, and of a message, that are unpacked at most.
-pub(super) const LARGEST_FILE: u64 = 1 << 30;
+/// Bytes of a message, at most.
 pub(super) const LARGEST_MESSAGE: u64 = 1 << 26;
 
 /// First bytes of what is packed.
@@ -29,17 +30,77 @@ pub(super) fn plain_name(file: &Path) -> PathBuf {
     }
 }
 
-/// Bytes unpacked, if they begin as packed ones do.
+/// What a bag's messages come to, which may lie in it packed, and more than once packed.
+pub(super) struct Budget {
+    limit: Limit,
+    size: u64,
+    used: Cell<u64>,
+}
+
+impl Budget {
+    /// Of files that have so many bytes.
+    pub fn new(limit: Limit, size: u64) -> Self {
+        Self {
+            limit,
+            size,
+            used: Cell::new(0),
+        }
+    }
+
+    /// Bytes that one piece may come to.
+    pub fn piece(&self) -> u64 {
+        self.limit.unpacked(self.size)
+    }
+
+    /// Counts bytes.
+    ///
+    /// # Errors
+    /// There are more than files of this size can hold.
+    pub fn take(&self, bytes: u64) -> Result<(), String> {
+        let most = self.limit.passed(self.size);
+        self.used.set(self.used.get().saturating_add(bytes));
+        match self.used.get() > most {
+            true => Err(self.limit.refusal(self.size, most)),
+            false => Ok(()),
+        }
+    }
+
+    /// Why a piece that claims to be longer than [`Budget::piece`] is refused.
+    pub fn refusal(&self) -> String {
+        self.limit.refusal(self.size, self.piece())
+    }
+}
+
+/// Bytes of a file unpacked, if they begin as packed ones do.
 ///
 /// # Errors
-/// They are damaged or cut off, or come to more than `most`.
-pub(super) fn unpacked(bytes: &[u8], most: u64) -> Result<Option<Vec<u8>>, String> {
+/// They are damaged or cut off, or come to more than the limit.
+pub(super) fn unpacked(bytes: &[u8], limit: Limit) -> Result<Option<Vec<u8>>, String> {
+    let size = bytes.len() as u64;
+    let most = limit.unpacked(size);
+    unpacked_to(bytes, most, || limit.refusal(size, most))
+}
+
+/// Bytes of a message, as [`unpacked`].
+///
+/// # Errors
+/// As those of [`unpacked`].
+pub(super) fn unpacked_message(bytes: &[u8]) -> Result<Option<Vec<u8>>, String> {
+    let refusal = || format!("it comes to more than {}", file::megabytes(LARGEST_MESSAGE));
+    unpacked_to(bytes, LARGEST_MESSAGE, refusal)
+}
+
+fn unpacked_to(
+    bytes: &[u8],
+    most: u64,
+    refusal: impl Fn() -> String,
+) -> Result<Option<Vec<u8>>, String> {
     if bytes.starts_with(GZIP) {
-        return all(MultiGzDecoder::new(bytes), most, "gzip").map(Some);
+        return all(MultiGzDecoder::new(bytes), most, "gzip", refusal).map(Some);
     }
     if bytes.starts_with(ZSTD) {
         let decoder = Decoder::with_buffer(bytes).map_err(|cause| cause.to_string())?;
-        return all(decoder, most, "zstd").map(Some);
+        return all(decoder, most, "zstd", refusal).map(Some);
     }
     Ok(None)
 }
@@ -48,15 +109,15 @@ pub(super) fn unpacked(bytes: &[u8], most: u64) -> Result<Option<Vec<u8>>, Strin
 ///
 /// # Errors
 /// It cannot be read or unpacked, or is known to be no text.
-pub(super) fn text_bytes(path: &Path) -> Result<Vec<u8>, ImportError> {
+pub(super) fn text_bytes(path: &Path, limit: Limit) -> Result<Vec<u8>, ImportError> {
     const EXPECTED: &str = "a text";
     signature::check(path, "text", EXPECTED)?;
     let fail = |cause: String| ImportError::Read {
         file: path.to_owned(),
         cause,
     };
-    let bytes = std::fs::read(path).map_err(|cause| fail(cause.to_string()))?;
-    let Some(plain) = unpacked(&bytes, LARGEST_FILE).map_err(fail)? else {
+    let bytes = file::read_up_to(path, limit.whole()).map_err(|cause| fail(cause.to_string()))?;
+    let Some(plain) = unpacked(&bytes, limit).map_err(fail)? else {
         return Ok(bytes);
     };
     match signature::of_bytes(&plain) {
@@ -80,17 +141,19 @@ pub(super) fn begins_packed(file: std::fs::File) -> Option<Box<dyn Read>> {
 }
 
 /// All that a decoder gives, up to a bound.
-fn all(decoder: impl Read, most: u64, what: &str) -> Result<Vec<u8>, String> {
+fn all(
+    decoder: impl Read,
+    most: u64,
+    what: &str,
+    refusal: impl Fn() -> String,
+) -> Result<Vec<u8>, String> {
     let mut plain = Vec::new();
-    let mut bounded = decoder.take(most + 1);
+    let mut bounded = decoder.take(most.saturating_add(1));
     bounded
         .read_to_end(&mut plain)
         .map_err(|cause| format!("it is packed with {what}, and damaged or cut off: {cause}"))?;
     if plain.len() as u64 > most {
-        return Err(format!(
-            "it is packed with {what} and comes to more than {} MB; unpack it and import a part of it",
-            most >> 20
-        ));
+        return Err(format!("it is packed with {what}: {}", refusal()));
     }
     Ok(plain)
 }
@@ -116,12 +179,13 @@ mod tests {
             by_zstd,
             [gzip(&plain[..2000]), gzip(&plain[2000..])].concat(),
         ] {
-            assert_eq!(unpacked(&packed, 5000), Ok(Some(plain.clone())));
-            let said = unpacked(&packed, 4999).unwrap_err();
-            assert!(said.contains("more than"), "{said}");
-            let said = unpacked(&packed[..packed.len() - 3], 5000).unwrap_err();
+            let to = |most: u64| unpacked_to(&packed, most, || "too much".to_owned());
+            assert_eq!(to(5000), Ok(Some(plain.clone())));
+            let said = to(4999).unwrap_err();
+            assert!(said.contains("too much"), "{said}");
+            let said = unpacked(&packed[..packed.len() - 3], Limit::default()).unwrap_err();
             assert!(said.contains("damaged or cut off"), "{said}");
         }
-        assert_eq!(unpacked(b"0.5 1.5\n", 5000), Ok(None));
+        assert_eq!(unpacked(b"0.5 1.5\n", Limit::default()), Ok(None));
     }
 }

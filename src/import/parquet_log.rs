@@ -13,7 +13,7 @@ use crate::recording::table::{Cells, Table};
 /// Reads the rows of a table.
 pub(super) fn read(path: &Path, map: &FileMap) -> Result<Rows, ImportError> {
     signature::check(path, "parquet", "a Parquet table")?;
-    let table = Table::open(path)?;
+    let table = Table::open(path, map.limit)?;
     let names = table.names();
     let (time_place, channel_places) = places(path, map, Some(&names), names.len())?;
     let wanted: Vec<usize> = time_place.iter().chain(&channel_places).copied().collect();

@@ -1,10 +1,10 @@
 //! Forms of files, known by their first bytes: those that are read, and those that are not, with what to do about them.
 
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
 use super::error::ImportError;
+use crate::file;
 
 /// First bytes that are looked at.
 const LOOKED_AT: u64 = 1 << 16;
@@ -184,7 +184,7 @@ impl Signature {
 /// It cannot be read.
 pub(super) fn of_file(path: &Path) -> Result<Option<Signature>, ImportError> {
     let mut start = Vec::new();
-    File::open(path)
+    file::open(path)
         .and_then(|file| file.take(LOOKED_AT).read_to_end(&mut start))
         .map_err(|cause| ImportError::Read {
             file: path.to_owned(),
@@ -192,7 +192,7 @@ pub(super) fn of_file(path: &Path) -> Result<Option<Signature>, ImportError> {
         })?;
     if start.starts_with(b"PK\x03\x04") {
         // Names of its members stand in its directory, at its end.
-        return Ok(Some(of_archive(&std::fs::read(path).unwrap_or(start))));
+        return Ok(Some(of_archive(&file::read(path).unwrap_or(start))));
     }
     Ok(of_bytes(&start))
 }

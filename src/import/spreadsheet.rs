@@ -4,16 +4,19 @@ use std::io::Cursor;
 use std::path::Path;
 
 use calamine::{
-    Data, ExcelDateTime, ExcelDateTimeType, Range, Reader, Sheets, open_workbook_auto_from_rs,
+    Data, DataRef, ExcelDateTime, ExcelDateTimeType, Range, Reader, Sheets,
+    open_workbook_auto_from_rs,
 };
 
 use super::error::ImportError;
-use super::packed::LARGEST_FILE;
 use super::rows::nearest_first;
 use super::signature;
+use crate::file::{self, Limit, guarded};
 
-/// Cells that are read of a sheet, at most.
-const MOST_CELLS: usize = 1 << 26;
+mod archive;
+
+/// Bytes of a cell, with its place.
+const CELL: u64 = 24;
 /// A day, in which serial dates count [us].
 const DAY: i64 = 86_400_000_000;
 
@@ -35,8 +38,9 @@ pub(super) fn read(
     path: &Path,
     name: Option<&str>,
     decimal_mark: char,
+    limit: Limit,
 ) -> Result<SheetText, ImportError> {
-    let mut sheets = open(path)?;
+    let mut sheets = open(path, limit)?;
     let names = sheets.sheet_names();
     let chosen = match name {
         Some(name) if names.iter().any(|own| own == name) => name.to_owned(),
@@ -47,9 +51,9 @@ pub(super) fn read(
                 format!("it has no sheet `{name}`; there are {there}"),
             ));
         }
-        None => only(path, filled(path, &mut sheets, &names)?)?,
+        None => only(path, filled(path, &mut sheets, &names, limit)?)?,
     };
-    let range = range(path, &mut sheets, &chosen)?;
+    let range = range(path, &mut sheets, &chosen, limit)?;
     Ok(SheetText {
         name: chosen,
         others: Vec::new(),
@@ -77,17 +81,17 @@ fn only(path: &Path, mut filled: Vec<(String, usize)>) -> Result<String, ImportE
 ///
 /// # Errors
 /// No spreadsheet, or none of its sheets holds anything.
-pub(super) fn likely(path: &Path) -> Result<SheetText, ImportError> {
-    let mut sheets = open(path)?;
+pub(super) fn likely(path: &Path, limit: Limit) -> Result<SheetText, ImportError> {
+    let mut sheets = open(path, limit)?;
     let names = sheets.sheet_names();
-    let filled = filled(path, &mut sheets, &names)?;
+    let filled = filled(path, &mut sheets, &names, limit)?;
     // The first of those with as many.
     let best = filled.iter().rev().max_by_key(|(_, numbers)| *numbers);
     let Some((name, _)) = best else {
         return Err(fail(path, "its sheets are empty".to_owned()));
     };
     let others = filled.iter().filter(|(other, _)| other != name);
-    let range = range(path, &mut sheets, name)?;
+    let range = range(path, &mut sheets, name, limit)?;
     Ok(SheetText {
         others: others.map(|(other, _)| other.clone()).collect(),
         text: text(&range, is_1904(&sheets), '.'),
@@ -104,17 +108,16 @@ fn fail(path: &Path, cause: String) -> ImportError {
     }
 }
 
-fn open(path: &Path) -> Result<Workbook, ImportError> {
+fn open(path: &Path, limit: Limit) -> Result<Workbook, ImportError> {
     signature::check(path, "spreadsheet", "a spreadsheet")?;
-    let bytes = std::fs::read(path).map_err(|cause| fail(path, cause.to_string()))?;
-    if unpacked_size(&bytes) > LARGEST_FILE {
-        let cause = format!(
-            "it comes to more than {} MB unpacked; export its sheet as CSV",
-            LARGEST_FILE >> 20
-        );
-        return Err(fail(path, cause));
+    let bytes = file::read_up_to(path, limit.whole());
+    let bytes = bytes.map_err(|cause| fail(path, cause.to_string()))?;
+    let most = limit.unpacked(bytes.len() as u64);
+    if archive::unpacked_size(&bytes, most) > most || archive::cells_of_ods(&bytes, most) > most {
+        return Err(too_much(path, bytes.len() as u64, limit));
     }
-    open_workbook_auto_from_rs(Cursor::new(bytes)).map_err(|_| {
+    let opened = guarded(|| open_workbook_auto_from_rs(Cursor::new(bytes)));
+    opened.ok().and_then(Result::ok).ok_or_else(|| {
         fail(
             path,
             "it is no spreadsheet that can be read (xlsx, xlsb, xls, ods), or has a password; export its sheet as CSV".to_owned(),
@@ -122,20 +125,9 @@ fn open(path: &Path) -> Result<Workbook, ImportError> {
     })
 }
 
-/// What the members of a zip archive come to, as its directory says (PKWARE, APPNOTE 4.3.12) [B].
-fn unpacked_size(bytes: &[u8]) -> u64 {
-    const ENTRY: &[u8] = b"PK\x01\x02";
-    const SIZE: std::ops::Range<usize> = 24..28;
-    let mut sum = 0;
-    let mut rest = bytes;
-    while let Some(at) = rest.windows(ENTRY.len()).position(|window| window == ENTRY) {
-        rest = &rest[at..];
-        if let Some(&[a, b, c, d]) = rest.get(SIZE) {
-            sum += u64::from(u32::from_le_bytes([a, b, c, d]));
-        }
-        rest = &rest[ENTRY.len()..];
-    }
-    sum
+fn too_much(path: &Path, size: u64, limit: Limit) -> ImportError {
+    let refusal = limit.refusal(size, limit.unpacked(size));
+    fail(path, format!("{refusal}; or export its sheet as CSV"))
 }
 
 /// Sheets that hold anything, with how many numbers.
@@ -143,10 +135,11 @@ fn filled(
     path: &Path,
     sheets: &mut Workbook,
     names: &[String],
+    limit: Limit,
 ) -> Result<Vec<(String, usize)>, ImportError> {
     let mut found = Vec::new();
     for name in names {
-        let range = range(path, sheets, name)?;
+        let range = range(path, sheets, name, limit)?;
         let is_number = |data: &&Data| {
             matches!(
                 data,
@@ -161,41 +154,101 @@ fn filled(
     Ok(found)
 }
 
-fn range(path: &Path, sheets: &mut Workbook, name: &str) -> Result<Range<Data>, ImportError> {
-    if let Sheets::Xlsx(workbook) = sheets {
-        check_extent(path, workbook, name)?;
-    }
-    let range = sheets.worksheet_range(name);
-    range.map_err(|cause| fail(path, format!("its sheet `{name}` cannot be read: {cause}")))
+fn range(
+    path: &Path,
+    sheets: &mut Workbook,
+    name: &str,
+    limit: Limit,
+) -> Result<Range<Data>, ImportError> {
+    let cannot = |cause: String| fail(path, format!("its sheet `{name}` cannot be read: {cause}"));
+    check_extent(path, sheets, name, limit)?;
+    let range = guarded(|| sheets.worksheet_range(name)).map_err(cannot)?;
+    range.map_err(|cause| cannot(cause.to_string()))
 }
 
-/// Refuses a sheet whose cells stand too far apart to be kept as a table.
+/// Measures a sheet's cells one by one: those of a table go to the last row and column, and a text may be that of many.
+macro_rules! extent {
+    ($workbook:expr, $name:expr, $most:expr, $no_sheet:pat) => {{
+        let mut extent = Extent::default();
+        match $workbook.worksheet_cells_reader($name) {
+            // A chart has no cells.
+            Err($no_sheet) => Ok(extent),
+            Err(cause) => Err(cause.to_string()),
+            Ok(mut cells) => loop {
+                match cells.next_cell() {
+                    Ok(Some(cell)) => extent.take(cell.get_position(), cell.get_value()),
+                    Ok(None) => break Ok(extent),
+                    Err(cause) => break Err(cause.to_string()),
+                }
+                if extent.bytes() > $most {
+                    break Ok(extent);
+                }
+            },
+        }
+    }};
+}
+
+/// How far a sheet's cells go, and what their texts come to.
+#[derive(Debug, Default)]
+struct Extent {
+    rows: u64,
+    columns: u64,
+    texts: u64,
+}
+
+impl Extent {
+    fn take(&mut self, (row, column): (u32, u32), value: &DataRef<'_>) {
+        self.rows = self.rows.max(u64::from(row) + 1);
+        self.columns = self.columns.max(u64::from(column) + 1);
+        self.texts += match value {
+            DataRef::String(text) => text.len() as u64,
+            DataRef::SharedString(text) => text.len() as u64,
+            _ => 0,
+        };
+    }
+
+    fn bytes(&self) -> u64 {
+        CELL * self.rows * self.columns + self.texts
+    }
+}
+
+/// Refuses a sheet whose cells stand too far apart to be kept as a table, or hold too much.
 fn check_extent(
     path: &Path,
-    workbook: &mut calamine::Xlsx<Cursor<Vec<u8>>>,
+    sheets: &mut Workbook,
     name: &str,
+    limit: Limit,
 ) -> Result<(), ImportError> {
-    let cannot = |cause: calamine::XlsxError| {
-        fail(path, format!("its sheet `{name}` cannot be read: {cause}"))
-    };
-    let mut cells = match workbook.worksheet_cells_reader(name) {
-        // A chart has no cells.
-        Err(calamine::XlsxError::NotAWorksheet(_)) => return Ok(()),
-        read => read.map_err(cannot)?,
-    };
-    let (mut rows, mut columns) = (0, 0);
-    while let Some(cell) = cells.next_cell().map_err(cannot)? {
-        let (row, column) = cell.get_position();
-        rows = rows.max(row as usize + 1);
-        columns = columns.max(column as usize + 1);
-        if rows * columns > MOST_CELLS {
-            let cause = format!(
-                "its sheet `{name}` goes to row {rows} and column {columns}, more than can be a log; delete what stands far off, or export the log as CSV"
-            );
-            return Err(fail(path, cause));
+    let most = limit.whole();
+    let extent = guarded(|| match sheets {
+        Sheets::Xlsx(workbook) => {
+            extent!(workbook, name, most, calamine::XlsxError::NotAWorksheet(_))
         }
+        Sheets::Xlsb(workbook) => {
+            extent!(
+                workbook,
+                name,
+                most,
+                calamine::XlsbError::WorksheetNotFound(_)
+            )
+        }
+        // Of xls the rows are few; of ods they were counted.
+        _ => Ok(Extent::default()),
+    });
+    let cannot = |cause: String| fail(path, format!("its sheet `{name}` cannot be read: {cause}"));
+    let extent = extent.and_then(|extent| extent).map_err(cannot)?;
+    if extent.bytes() <= most {
+        return Ok(());
     }
-    Ok(())
+    let (rows, columns) = (extent.rows, extent.columns);
+    Err(fail(
+        path,
+        format!(
+            "its sheet `{name}` goes to row {rows} and column {columns} and comes to more than {}, expected a log: delete what stands far off, or export the log as CSV; {}",
+            file::megabytes(most),
+            file::RAISED_BY
+        ),
+    ))
 }
 
 fn is_1904(sheets: &Workbook) -> bool {

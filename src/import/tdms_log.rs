@@ -10,6 +10,7 @@ use super::error::ImportError;
 use super::map::{ChannelMap, FileMap};
 use super::rows::{Remark, Rows, Times, place};
 use super::{parquet_log, signature};
+use crate::file::Limit;
 use crate::recording::table::Cells;
 
 mod bytes;
@@ -20,7 +21,7 @@ pub(super) use file::{Channel, Contents, Waveform};
 
 /// Reads the channels that a map names: those with times of their own each by itself.
 pub(super) fn read(path: &Path, map: &FileMap) -> Result<Vec<Rows>, ImportError> {
-    let contents = contents(path)?;
+    let contents = contents(path, map.limit)?;
     let mut remarks = Vec::new();
     if let Some(found) = &contents.torn {
         let rest = format!("{} values of its channels can be read", contents.values());
@@ -141,13 +142,14 @@ fn no_waveform(path: &Path, channel: &ChannelMap, own: &Channel) -> ImportError 
 ///
 /// # Errors
 /// It cannot be read, or is no TDMS.
-pub(super) fn contents(path: &Path) -> Result<Contents, ImportError> {
+pub(super) fn contents(path: &Path, limit: Limit) -> Result<Contents, ImportError> {
     signature::check(path, "tdms", "a TDMS file")?;
     let fail = |cause: String| ImportError::Read {
         file: path.to_owned(),
         cause,
     };
-    let bytes = std::fs::read(path).map_err(|cause| fail(cause.to_string()))?;
+    let bytes =
+        crate::file::read_up_to(path, limit.whole()).map_err(|cause| fail(cause.to_string()))?;
     let contents = file::parse(&bytes).map_err(fail)?;
     if contents.channels.is_empty() {
         return Err(fail("it holds no channels".to_owned()));

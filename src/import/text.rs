@@ -2,29 +2,30 @@
 
 use std::path::Path;
 
-use csv::StringRecord;
-
 use super::encoding::{DetectedEncoding, decode};
 use super::error::ImportError;
 use super::map::Separator;
 use super::packed::text_bytes;
+use crate::file::Limit;
 
 mod columns;
 mod reading;
+mod record;
 mod rows;
 
 pub(super) use columns::elements;
+pub(super) use record::Record;
 pub(super) use rows::{read, read_content};
 
-/// The fields of a row.
-pub(super) type Record = StringRecord;
+/// Fields of a row, at most.
+const MOST_FIELDS: usize = 1 << 16;
 
 /// The lines of a text, those before its rows apart.
 pub(super) struct Sheet {
     /// Lines before the rows.
     pub header: Vec<String>,
     /// Fields of each row, with its line from 1.
-    pub rows: Vec<(u64, StringRecord)>,
+    pub rows: Vec<(u64, Record)>,
     /// Whether the last line ends.
     is_whole: bool,
     /// Fields that the last row holds to their ends.
@@ -35,7 +36,7 @@ impl Sheet {
     /// Takes a text apart, or says what the reader cannot.
     pub fn of(text: &str, header_lines: usize, separator: &Separator) -> Result<Self, String> {
         let (header, body) = split_after(text, header_lines);
-        let rows = records(body, header.len() as u64, separator).map_err(|e| e.to_string())?;
+        let rows = records(body, header.len() as u64, separator)?;
         let last = rows.last().map_or(0, |(_, row)| row.len());
         Ok(Self {
             // A log that was cut off ends within a field, and what stands of it may be another number.
@@ -54,9 +55,13 @@ impl Sheet {
 pub(super) fn content(
     path: &Path,
     encoding: Option<&str>,
+    limit: Limit,
 ) -> Result<(String, DetectedEncoding), ImportError> {
-    let bytes = text_bytes(path)?;
-    let (text, detected) = decode(path, &bytes, encoding)?;
+    let bytes = text_bytes(path, limit)?;
+    let (text, detected) = decode(path, bytes, encoding)?;
+    if !text.contains('\r') {
+        return Ok((text, detected));
+    }
     // Of a line that ends with both, the reader counts the end to the next one.
     let text = text.replace("\r\n", "\n");
     let text = if text.contains('\n') {
@@ -107,15 +112,15 @@ fn split_after(text: &str, count: usize) -> (Vec<&str>, &str) {
 }
 
 /// The fields of each line that has any, with its number from 1, that many lines standing before.
-fn records(
-    text: &str,
-    before: u64,
-    separator: &Separator,
-) -> Result<Vec<(u64, StringRecord)>, csv::Error> {
-    let plain = |split: &dyn Fn(&str) -> StringRecord| {
+fn records(text: &str, before: u64, separator: &Separator) -> Result<Vec<(u64, Record)>, String> {
+    let plain = |split: &dyn Fn(&str) -> Record| {
         let lines = (before + 1..).zip(text.lines());
         let filled = lines.filter(|(_, line)| !line.trim().is_empty());
-        Ok(filled.map(|(number, line)| (number, split(line))).collect())
+        let mut rows = Vec::new();
+        for (line, text) in filled {
+            rows.push((line, few(line, split(text))?));
+        }
+        Ok(rows)
     };
     match separator {
         Separator::Character(character) => {
@@ -125,15 +130,26 @@ fn records(
                 .flexible(true)
                 .trim(csv::Trim::All)
                 .from_reader(text.as_bytes());
-            let numbered = |record: Result<StringRecord, csv::Error>| {
-                let record = record?;
-                let line = record.position().map_or(0, csv::Position::line);
-                Ok((before + line, record))
-            };
-            reader.records().map(numbered).collect()
+            let mut record = csv::StringRecord::new();
+            let mut rows = Vec::new();
+            while reader.read_record(&mut record).map_err(|e| e.to_string())? {
+                let line = before + record.position().map_or(0, csv::Position::line);
+                rows.push((line, few(line, Record::of(record.iter()))?));
+            }
+            Ok(rows)
         }
-        Separator::Whitespace => plain(&|line| line.split_whitespace().collect::<Vec<_>>().into()),
-        Separator::Widths(widths) => plain(&|line| cut(line, widths).into()),
+        Separator::Whitespace => plain(&|line| Record::of(line.split_whitespace())),
+        Separator::Widths(widths) => plain(&|line| Record::of(cut(line, widths).into_iter())),
+    }
+}
+
+/// Refuses a row of more fields than any log has.
+fn few(line: u64, record: Record) -> Result<Record, String> {
+    match record.len() {
+        0..=MOST_FIELDS => Ok(record),
+        found => Err(format!(
+            "line {line} has {found} fields, expected {MOST_FIELDS} at most"
+        )),
     }
 }
 

@@ -45,7 +45,7 @@ enum Scalar {
 
 /// Reads a file as text.
 pub(crate) fn read_text(file: &Path) -> Result<String, ScenarioError> {
-    std::fs::read_to_string(file).map_err(|source| match source.kind() {
+    crate::file::read_settings(file).map_err(|source| match source.kind() {
         std::io::ErrorKind::NotFound => ScenarioError::NoSuchFile {
             file: file.to_owned(),
         },

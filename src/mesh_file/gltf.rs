@@ -235,7 +235,7 @@ fn load(
             "put it beside the file, or export a .glb",
         ));
     }
-    std::fs::read(folder.join(&name))
+    crate::file::read(folder.join(&name))
         .map_err(|error| Fault::malformed(format!("buffer {index}, file {name}: {error}")))
 }
 

@@ -88,7 +88,7 @@ impl Reader {
                 let names = statement.trim_start()[6..].trim();
                 let whole = std::iter::once(names);
                 for name in whole.chain(words) {
-                    if let Ok(bytes) = std::fs::read(folder.join(name.replace('\\', "/"))) {
+                    if let Ok(bytes) = crate::file::read(folder.join(name.replace('\\', "/"))) {
                         self.colours.extend(colours(&decoded(&bytes)));
                     }
                 }

@@ -13,7 +13,7 @@ use super::{collada, gltf, obj, ply, stl};
 /// It cannot be read, or is not of a format that is read here, or not as its format has it.
 pub fn read(path: &Path) -> Result<MeshFile, MeshFileError> {
     let file = path.to_owned();
-    let bytes = match std::fs::read(path) {
+    let bytes = match crate::file::read(path) {
         Ok(bytes) => bytes,
         Err(source) => return Err(MeshFileError::Read { file, source }),
     };

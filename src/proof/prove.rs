@@ -93,7 +93,7 @@ pub(super) fn score(
     sealed: &Path,
 ) -> Result<CaseScore, ProofError> {
     let path = sealed.join(format!("{name}.json"));
-    let text = std::fs::read_to_string(&path).map_err(|cause| ProofError::read(&path, cause))?;
+    let text = crate::file::read_text(&path).map_err(|cause| ProofError::read(&path, cause))?;
     let truth: SealedCase =
         serde_json::from_str(&text).map_err(|cause| ProofError::read(&path, cause))?;
     let answer = match answer {

@@ -220,7 +220,7 @@ fn existing<O: DeserializeOwned>(
     making: &dyn Fn(&O) -> Made,
     made: &Made,
 ) -> Result<Option<O>, ProofError> {
-    let Ok(text) = std::fs::read_to_string(path) else {
+    let Ok(text) = crate::file::read_text(path) else {
         return Ok(None);
     };
     let Ok(outcome) = serde_json::from_str::<O>(&text) else {

@@ -2,12 +2,10 @@
 //!
 //! Numbers are `f64`, null where there is none; names are text. Equal tables give equal bytes.
 
-use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
 
-use ::parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
-use ::parquet::arrow::{ArrowWriter, ProjectionMask};
+use ::parquet::arrow::ArrowWriter;
 use ::parquet::basic::{Compression, Encoding};
 use ::parquet::errors::ParquetError;
 use ::parquet::file::properties::WriterProperties;
@@ -21,6 +19,8 @@ use arrow::datatypes::{DataType, Field, FieldRef, Float64Type, Int32Type, Schema
 use super::RecordingError;
 use super::atomic::write_atomic;
 use super::long_column::LongColumn;
+use super::parquet_file::ParquetFile;
+use crate::file::Limit;
 
 /// Writes columns by name, all of one length.
 ///
@@ -127,9 +127,9 @@ pub fn read_columns(
     wanted: impl Fn(&str) -> bool,
 ) -> Result<Vec<(String, LongColumn)>, RecordingError> {
     let fail = |cause: &dyn std::fmt::Display| RecordingError::read(path, cause);
-    let file = File::open(path).map_err(|e| fail(&e))?;
-    let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|e| fail(&e))?;
-    let fields = builder.schema().fields().iter().enumerate();
+    let file = ParquetFile::open(path)?;
+    let schema = file.builder.schema().clone();
+    let fields = schema.fields().iter().enumerate();
     let fields: Vec<_> = fields.filter(|(_, field)| wanted(field.name())).collect();
     // A table without rows has its columns too.
     let empty = |(_, field): &(usize, &FieldRef)| {
@@ -141,10 +141,8 @@ pub fn read_columns(
         .map(empty)
         .collect::<Result<_, RecordingError>>()?;
     let places: Vec<usize> = fields.iter().map(|(place, _)| *place).collect();
-    let mask = ProjectionMask::roots(builder.parquet_schema(), places);
-    let reader = builder.with_projection(mask).build();
-    for batch in reader.map_err(|e| fail(&e))? {
-        let batch = batch.map_err(|e| fail(&e))?;
+    let most = |size: u64| Limit::default().passed(size);
+    file.decode(path, &places, None, most, |batch| {
         for ((_, all), column) in columns.iter_mut().zip(batch.columns()) {
             match (all, long_column(column).map_err(|e| fail(&e))?) {
                 (LongColumn::Names(all), LongColumn::Names(more)) => all.extend(more),
@@ -152,7 +150,8 @@ pub fn read_columns(
                 _ => return Err(fail(&"a column holds both names and numbers")),
             }
         }
-    }
+        Ok(())
+    })?;
     Ok(columns)
 }
 

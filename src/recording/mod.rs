@@ -14,12 +14,16 @@ pub mod long_column;
 pub mod long_table;
 #[cfg(feature = "parquet")]
 pub mod parquet;
+#[cfg(feature = "parquet")]
+mod parquet_file;
 pub mod provenance;
 pub mod samples;
 pub mod schema;
 #[cfg(feature = "parquet")]
 pub mod table;
 pub mod thousandfold;
+#[cfg(feature = "parquet")]
+mod thrift;
 
 pub use crate::unit::SiUnit as Unit;
 pub use error::RecordingError;

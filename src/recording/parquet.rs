@@ -7,11 +7,9 @@
 //! file depends on the clock or the machine.
 
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::path::Path;
 use std::sync::Arc;
 
-use ::parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use ::parquet::arrow::{ARROW_SCHEMA_META_KEY, ArrowWriter};
 use ::parquet::basic::{Compression, Encoding};
 use ::parquet::errors::ParquetError;
@@ -19,11 +17,13 @@ use ::parquet::file::metadata::KeyValue;
 use ::parquet::file::properties::WriterProperties;
 use ::parquet::schema::types::ColumnPath;
 use arrow::array::{Array, ArrayRef, AsArray, DictionaryArray, Float64Array, RecordBatch};
-use arrow::compute::{cast, concat_batches};
+use arrow::compute::cast;
 use arrow::datatypes::{DataType, Field, Float64Type, Int32Type, Schema};
 
 use super::atomic::write_atomic;
+use super::parquet_file::ParquetFile;
 use super::{PhaseSpan, RecordedChannel, Recording, RecordingError, Unit, schema};
+use crate::file::{Limit, guarded};
 use crate::unit::{column_name, parse_column_name};
 
 /// Version of the table's layout, raised when a reader of the old one would misread the new one.
@@ -72,9 +72,8 @@ pub fn write_parquet(
 /// [`RecordingError::Column`] for a column that is no channel; those of [`Recording::new`].
 pub fn read_parquet(path: &Path) -> Result<StoredRecording, RecordingError> {
     let fail = |cause: &dyn std::fmt::Display| RecordingError::read(path, cause);
-    let file = File::open(path).map_err(|e| fail(&e))?;
-    let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|e| fail(&e))?;
-    let pairs = builder.metadata().file_metadata().key_value_metadata();
+    let file = ParquetFile::open(path)?;
+    let pairs = file.builder.metadata().file_metadata().key_value_metadata();
     let mut metadata: BTreeMap<String, String> = pairs
         .into_iter()
         .flatten()
@@ -88,23 +87,10 @@ pub fn read_parquet(path: &Path) -> Result<StoredRecording, RecordingError> {
             "its layout has version {version}, expected {LAYOUT_VERSION}"
         )));
     }
-    let table = whole(path, builder)?;
     Ok(StoredRecording {
-        recording: recording_of(path, &table)?,
+        recording: recording_of(path, file)?,
         metadata,
     })
-}
-
-/// All rows of a file.
-pub(super) fn whole(
-    path: &Path,
-    builder: ParquetRecordBatchReaderBuilder<File>,
-) -> Result<RecordBatch, RecordingError> {
-    let fail = |cause: &dyn std::fmt::Display| RecordingError::read(path, cause);
-    let schema = builder.schema().clone();
-    let reader = builder.build().map_err(|e| fail(&e))?;
-    let batches = reader.collect::<Result<Vec<RecordBatch>, _>>();
-    concat_batches(&schema, &batches.map_err(|e| fail(&e))?).map_err(|e| fail(&e))
 }
 
 fn writer_properties(
@@ -179,11 +165,16 @@ fn phase_column(recording: &Recording) -> DictionaryArray<Int32Type> {
     names.into_iter().collect()
 }
 
-fn recording_of(path: &Path, table: &RecordBatch) -> Result<Recording, RecordingError> {
-    let mut time = None;
-    let mut phase_names = Vec::new();
-    let mut channels = Vec::new();
-    for (field, column) in table.schema().fields().iter().zip(table.columns()) {
+/// What a column of a file is.
+enum Column {
+    Phase(Vec<Option<String>>),
+    Time(Vec<f64>),
+    Channel(RecordedChannel),
+}
+
+impl Column {
+    /// By its name and its type.
+    fn of(path: &Path, field: &Field) -> Result<Self, RecordingError> {
         let fault = |expected: &str| RecordingError::Column {
             path: path.to_path_buf(),
             column: field.name().clone(),
@@ -191,10 +182,7 @@ fn recording_of(path: &Path, table: &RecordBatch) -> Result<Recording, Recording
             expected: expected.to_owned(),
         };
         if field.name() == schema::PHASE {
-            let text = cast(column, &DataType::Utf8).map_err(|_| fault("text"))?;
-            let text = text.as_string::<i32>();
-            phase_names = text.iter().map(|name| name.map(str::to_owned)).collect();
-            continue;
+            return Ok(Self::Phase(Vec::new()));
         }
         let Some((quantity, unit)) = parse_column_name(field.name()) else {
             return Err(fault(
@@ -204,18 +192,70 @@ fn recording_of(path: &Path, table: &RecordBatch) -> Result<Recording, Recording
         if !field.data_type().is_numeric() {
             return Err(fault("numbers"));
         }
-        let numbers = cast(column, &DataType::Float64).map_err(|_| fault("numbers"))?;
+        Ok(match quantity == schema::TIME && unit == Unit::Second {
+            true => Self::Time(Vec::new()),
+            false => Self::Channel(RecordedChannel::new(quantity, unit, Vec::new())),
+        })
+    }
+
+    /// Puts more rows behind those that it has; not where they are of another type.
+    fn extend(&mut self, more: &ArrayRef) -> Option<()> {
+        let values = match self {
+            Self::Phase(names) => {
+                let text = cast(more, &DataType::Utf8).ok()?;
+                let text = text.as_string::<i32>();
+                names.extend(text.iter().map(|name| name.map(str::to_owned)));
+                return Some(());
+            }
+            Self::Time(values) => values,
+            Self::Channel(channel) => &mut channel.values,
+        };
+        let numbers = cast(more, &DataType::Float64).ok()?;
         let numbers = numbers.as_primitive::<Float64Type>();
-        let values: Vec<f64> = numbers.iter().map(|v| v.unwrap_or(f64::NAN)).collect();
-        if quantity == schema::TIME && unit == Unit::Second {
-            time = Some(values);
-        } else {
-            channels.push(RecordedChannel::new(quantity, unit, values));
+        match numbers.null_count() {
+            0 => values.extend_from_slice(numbers.values()),
+            _ => values.extend(numbers.iter().map(|v| v.unwrap_or(f64::NAN))),
+        }
+        Some(())
+    }
+}
+
+fn recording_of(path: &Path, file: ParquetFile) -> Result<Recording, RecordingError> {
+    let fields = file.builder.schema().fields().clone();
+    let columns = fields.iter().map(|field| Column::of(path, field));
+    let mut columns: Vec<Column> = columns.collect::<Result<_, _>>()?;
+    let all: Vec<usize> = (0..columns.len()).collect();
+    let most = |size: u64| Limit::default().passed(size);
+    file.decode(path, &all, None, most, |batch| {
+        for ((field, own), more) in fields.iter().zip(&mut columns).zip(batch.columns()) {
+            let read = guarded(|| own.extend(more));
+            let read = read.map_err(|cause| RecordingError::read(path, cause))?;
+            read.ok_or_else(|| RecordingError::Column {
+                path: path.to_path_buf(),
+                column: field.name().clone(),
+                found: field.data_type().to_string(),
+                expected: match field.name() == schema::PHASE {
+                    true => "text".to_owned(),
+                    false => "numbers".to_owned(),
+                },
+            })?;
+        }
+        Ok(())
+    })?;
+    let (mut time, mut phase_names, mut channels) = (None, Vec::new(), Vec::new());
+    for column in columns {
+        match column {
+            Column::Phase(names) => phase_names = names,
+            Column::Time(values) => time = Some(values),
+            Column::Channel(channel) => channels.push(channel),
         }
     }
     let Some(time) = time else {
         return Err(RecordingError::read(path, "it has no column `time_s`"));
     };
+    if !phase_names.is_empty() && phase_names.len() != time.len() {
+        return Err(RecordingError::read(path, "its columns differ in length"));
+    }
     let phases = phases_of(&time, &phase_names);
     Recording::new(time, channels, phases)
 }
@@ -241,7 +281,9 @@ fn phases_of(time: &[f64], names: &[Option<String>]) -> Vec<PhaseSpan> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::fs;
+    use std::fs::{self, File};
+
+    use ::parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 
     fn sample_recording() -> Recording {
         let time: Vec<f64> = (0..5000_i32).map(|i| f64::from(i) * 1e-3).collect();

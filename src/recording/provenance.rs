@@ -89,17 +89,21 @@ impl SourceFile {
     /// A file of this name that holds these bytes.
     #[must_use]
     pub fn holding(name: &str, bytes: &[u8]) -> Self {
-        let mut sha256 = String::with_capacity(64);
-        for byte in Sha256::digest(bytes) {
-            // Writing into a text cannot fail.
-            let _ = write!(sha256, "{byte:02x}");
-        }
         Self {
             file: name.to_owned(),
             bytes: bytes.len() as u64,
-            sha256,
+            sha256: hexadecimal(&Sha256::digest(bytes)),
         }
     }
+}
+
+fn hexadecimal(hash: &[u8]) -> String {
+    let mut text = String::with_capacity(2 * hash.len());
+    for byte in hash {
+        // Writing into a text cannot fail.
+        let _ = write!(text, "{byte:02x}");
+    }
+    text
 }
 
 impl SourceFile {
@@ -113,8 +117,15 @@ impl SourceFile {
 }
 
 fn source(name: &str, path: &Path) -> Result<SourceFile, RecordingError> {
-    let bytes = std::fs::read(path).map_err(|e| RecordingError::read(path, e))?;
-    Ok(SourceFile::holding(name, &bytes))
+    let fail = |cause: std::io::Error| RecordingError::read(path, cause);
+    let mut hash = Sha256::new();
+    let mut file = crate::file::open(path).map_err(fail)?;
+    let bytes = std::io::copy(&mut file, &mut hash).map_err(fail)?;
+    Ok(SourceFile {
+        file: name.to_owned(),
+        bytes,
+        sha256: hexadecimal(&hash.finalize()),
+    })
 }
 
 #[cfg(test)]

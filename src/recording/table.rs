@@ -1,20 +1,15 @@
 //! Columns of any Parquet table, whatever they are called: numbers, stamps of a clock, texts. Fields of structures and elements of lists are columns of their
 //! own: `wrench.force`, `force[2]`, counted from 0.
 
-use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-use ::parquet::arrow::ProjectionMask;
-use ::parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use arrow::array::{Array, ArrayRef, AsArray, RecordBatch, UInt64Array};
-use arrow::compute::{cast, concat_batches, take};
+use arrow::compute::{cast, take};
 use arrow::datatypes::{DataType, Float64Type, Int64Type, TimeUnit};
 
 use super::RecordingError;
-
-/// First and last bytes of a Parquet file.
-const MAGIC: [u8; 4] = *b"PAR1";
+use super::parquet_file::ParquetFile;
+use crate::file::{Limit, guarded};
 
 /// Elements of a list that are columns, at most, and rows that are looked at for the length of lists.
 const MOST_ELEMENTS: usize = 64;
@@ -26,7 +21,8 @@ const MOST_COLUMNS: usize = 4096;
 #[derive(Debug)]
 pub struct Table {
     path: PathBuf,
-    builder: ParquetRecordBatchReaderBuilder<File>,
+    file: ParquetFile,
+    limit: Limit,
     columns: Vec<Leaf>,
 }
 
@@ -63,21 +59,13 @@ impl Table {
     ///
     /// # Errors
     /// [`RecordingError::Read`] if it is absent, cut off or no Parquet.
-    pub fn open(path: &Path) -> Result<Self, RecordingError> {
-        let fail = |cause: &dyn std::fmt::Display| RecordingError::read(path, cause);
-        let mut file = File::open(path).map_err(|e| fail(&e))?;
-        let [start, end] = ends(&mut file).map_err(|e| fail(&e))?;
-        if start == MAGIC && end != MAGIC {
-            return Err(fail(
-                &"the Parquet file is cut off: where its columns stand is written at its end, and that is missing; \
-                  nothing of it can be read, copy it once more from where it was recorded",
-            ));
-        }
-        let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|e| fail(&e))?;
-        let columns = leaves(path, &builder).map_err(|cause| fail(&cause))?;
+    pub fn open(path: &Path, limit: Limit) -> Result<Self, RecordingError> {
+        let file = ParquetFile::open(path)?;
+        let columns = leaves(path, &file, limit)?;
         Ok(Self {
             path: path.to_owned(),
-            builder,
+            file,
+            limit,
             columns,
         })
     }
@@ -95,55 +83,66 @@ impl Table {
     pub fn read(self, places: &[usize]) -> Result<Vec<Cells>, RecordingError> {
         let Self {
             path,
-            builder,
+            file,
+            limit,
             columns,
         } = self;
-        let fail = |cause: &dyn std::fmt::Display| RecordingError::read(&path, cause);
         let wanted: Vec<&Leaf> = places.iter().map(|place| &columns[*place]).collect();
-        let roots = wanted.iter().map(|leaf| leaf.root);
-        let mask = ProjectionMask::roots(builder.parquet_schema(), roots.clone());
-        let batches: Vec<RecordBatch> = builder
-            .with_projection(mask)
-            .build()
-            .map_err(|e| fail(&e))?
-            .collect::<Result<_, _>>()
-            .map_err(|e| fail(&e))?;
-        let Some(first) = batches.first() else {
-            return Ok(vec![Cells::Numbers(Vec::new()); places.len()]);
-        };
-        let table = concat_batches(&first.schema(), &batches).map_err(|e| fail(&e))?;
         // Only the columns asked for are left, in the file's order.
-        let mut kept: Vec<usize> = roots.collect();
+        let mut kept: Vec<usize> = wanted.iter().map(|leaf| leaf.root).collect();
         kept.sort_unstable();
         kept.dedup();
-        let read = |leaf: &&Leaf| {
-            let index = kept.partition_point(|own| *own < leaf.root);
-            let column = descended(table.column(index), &leaf.steps);
-            let found = column.as_ref().and_then(cells);
-            found.ok_or_else(|| RecordingError::Column {
-                path: path.clone(),
-                column: leaf.name.clone(),
-                found: format!("of {}", table.schema().field(index).data_type()),
-                expected: "numbers, stamps or texts".to_owned(),
-            })
-        };
-        wanted.iter().map(read).collect()
+        let mut all: Vec<Option<Cells>> = vec![None; wanted.len()];
+        let most = |size: u64| limit.unpacked(size);
+        file.decode(&path, &kept, None, most, |batch| {
+            for (leaf, all) in wanted.iter().zip(&mut all) {
+                let index = kept.partition_point(|own| *own < leaf.root);
+                let read = || cells(&descended(batch.column(index), &leaf.steps)?);
+                let found = guarded(read).map_err(|cause| RecordingError::read(&path, cause))?;
+                let more = found.ok_or_else(|| RecordingError::Column {
+                    path: path.clone(),
+                    column: leaf.name.clone(),
+                    found: format!("of {}", batch.schema().field(index).data_type()),
+                    expected: "numbers, stamps or texts".to_owned(),
+                })?;
+                match all {
+                    Some(all) => all.extend(more),
+                    None => *all = Some(more),
+                }
+            }
+            Ok(())
+        })?;
+        let none = || Cells::Numbers(Vec::new());
+        Ok(all
+            .into_iter()
+            .map(|all| all.unwrap_or_else(none))
+            .collect())
+    }
+}
+
+impl Cells {
+    /// Puts others of the same column behind them.
+    fn extend(&mut self, more: Self) {
+        match (self, more) {
+            (Self::Numbers(all), Self::Numbers(more)) => all.extend(more),
+            (Self::Nanoseconds(all), Self::Nanoseconds(more)) => all.extend(more),
+            (Self::Texts(all), Self::Texts(more)) => all.extend(more),
+            // A column has one type.
+            _ => {}
+        }
     }
 }
 
 /// The columns of a table: those of structures by their fields, those of lists by their elements.
-fn leaves(
-    path: &Path,
-    builder: &ParquetRecordBatchReaderBuilder<File>,
-) -> Result<Vec<Leaf>, String> {
-    let schema = builder.schema().clone();
+fn leaves(path: &Path, file: &ParquetFile, limit: Limit) -> Result<Vec<Leaf>, RecordingError> {
+    let schema = file.builder.schema().clone();
     let nested: Vec<usize> = (0..schema.fields().len())
         .filter(|root| schema.field(*root).data_type().is_nested())
         .collect();
     let first = if nested.is_empty() {
         None
     } else {
-        first_rows(path, &nested)?
+        first_rows(path, &nested, limit)?
     };
     let mut found = Vec::new();
     for (root, field) in schema.fields().iter().enumerate() {
@@ -160,17 +159,19 @@ fn leaves(
 }
 
 /// The first rows of some columns, to see how long their lists are.
-fn first_rows(path: &Path, roots: &[usize]) -> Result<Option<RecordBatch>, String> {
-    let file = File::open(path).map_err(|e| e.to_string())?;
-    let builder = ParquetRecordBatchReaderBuilder::try_new(file).map_err(|e| e.to_string())?;
-    let mask = ProjectionMask::roots(builder.parquet_schema(), roots.iter().copied());
-    let reader = builder
-        .with_projection(mask)
-        .with_batch_size(LOOKED_AT)
-        .with_limit(LOOKED_AT)
-        .build();
-    let first = reader.map_err(|e| e.to_string())?.next();
-    first.transpose().map_err(|e| e.to_string())
+fn first_rows(
+    path: &Path,
+    roots: &[usize],
+    limit: Limit,
+) -> Result<Option<RecordBatch>, RecordingError> {
+    let mut first = None;
+    let most = |size: u64| limit.unpacked(size);
+    let file = ParquetFile::open(path)?;
+    file.decode(path, roots, Some(LOOKED_AT), most, |batch| {
+        first.get_or_insert(batch);
+        Ok(())
+    })?;
+    Ok(first)
 }
 
 /// Puts a column, or the parts of one, behind those found.
@@ -256,18 +257,6 @@ fn descended(column: &ArrayRef, steps: &[Step]) -> Option<ArrayRef> {
     Some(column)
 }
 
-/// The first and the last bytes of a file.
-fn ends(file: &mut File) -> std::io::Result<[[u8; 4]; 2]> {
-    let (mut start, mut end) = ([0; 4], [0; 4]);
-    if file.metadata()?.len() >= 8 {
-        file.read_exact(&mut start)?;
-        file.seek(SeekFrom::End(-4))?;
-        file.read_exact(&mut end)?;
-        file.rewind()?;
-    }
-    Ok([start, end])
-}
-
 /// Values of a column, if it holds any.
 fn cells(column: &ArrayRef) -> Option<Cells> {
     let factor = match column.data_type() {
@@ -318,6 +307,7 @@ fn texts(column: &ArrayRef) -> Option<Cells> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs::File;
     use std::sync::Arc;
 
     use ::parquet::arrow::ArrowWriter;
@@ -356,7 +346,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("log.parquet");
         write(&path);
-        let table = Table::open(&path).unwrap();
+        let table = Table::open(&path, Limit::default()).unwrap();
         assert_eq!(table.names(), ["stamp", "note", "ticks", "force"]);
         let read = table.read(&[3, 0, 2]).unwrap();
         assert_eq!(read[0], Cells::Numbers(vec![1.5, 2.5]));
@@ -366,7 +356,10 @@ mod tests {
             panic!("{read:?}")
         };
         assert!(ticks[0] == -7.0 && ticks[1].is_nan());
-        let texts = Table::open(&path).unwrap().read(&[1]).unwrap();
+        let texts = Table::open(&path, Limit::default())
+            .unwrap()
+            .read(&[1])
+            .unwrap();
         let both = vec![Some("a".to_owned()), Some("b".to_owned())];
         assert_eq!(texts, [Cells::Texts(both)]);
     }
@@ -378,7 +371,9 @@ mod tests {
         write(&path);
         let bytes = std::fs::read(&path).unwrap();
         std::fs::write(&path, &bytes[..bytes.len() - 9]).unwrap();
-        let error = Table::open(&path).unwrap_err().to_string();
+        let error = Table::open(&path, Limit::default())
+            .unwrap_err()
+            .to_string();
         assert!(error.contains("cut off"), "{error}");
     }
 }

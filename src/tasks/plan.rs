@@ -108,7 +108,7 @@ impl Plan {
     /// # Errors
     /// It cannot be read, is no plan, or is one of another version.
     pub fn open(path: &Path) -> Result<Self, TaskError> {
-        let file = File::open(path).map_err(|e| RecordingError::read(path, e))?;
+        let file = crate::file::open(path).map_err(|e| RecordingError::read(path, e))?;
         let mut lines = BufReader::new(file);
         let mut text = String::new();
         (lines.read_line(&mut text)).map_err(|e| RecordingError::read(path, e))?;
@@ -175,7 +175,7 @@ impl Plan {
     pub fn check(&self, others: &[SourceFile]) -> Result<(), TaskError> {
         for file in self.head.files.iter().chain(others) {
             let path = self.folder().join(&file.file);
-            let bytes = std::fs::read(&path).map_err(|e| RecordingError::read(&path, e))?;
+            let bytes = crate::file::read(&path).map_err(|e| RecordingError::read(&path, e))?;
             if SourceFile::holding("", &bytes).sha256 != file.sha256 {
                 return Err(TaskError::Changed {
                     file: path.display().to_string(),

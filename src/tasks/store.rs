@@ -70,7 +70,7 @@ impl Store {
     /// There is none, or it cannot be read.
     pub fn read<T: DeserializeOwned>(&self, id: &str) -> Result<T, RecordingError> {
         let path = self.folder(id).join(RESULT);
-        let text = std::fs::read(&path).map_err(|e| RecordingError::read(&path, e))?;
+        let text = crate::file::read(&path).map_err(|e| RecordingError::read(&path, e))?;
         serde_json::from_slice(&text).map_err(|e| RecordingError::read(&path, e))
     }
 

@@ -97,10 +97,10 @@ impl Points {
             file: path.display().to_string(),
             reason,
         };
-        let reader = csv::ReaderBuilder::new()
+        let file = crate::file::open(path).map_err(|e| refuse(e.to_string()))?;
+        let mut reader = csv::ReaderBuilder::new()
             .trim(csv::Trim::All)
-            .from_path(path);
-        let mut reader = reader.map_err(|e| refuse(e.to_string()))?;
+            .from_reader(file);
         let keys = reader.headers().map_err(|e| refuse(e.to_string()))?.clone();
         once(keys.iter())?;
         if keys

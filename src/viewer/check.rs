@@ -1,6 +1,5 @@
 //! Checks that a file is a whole `.rrd` of our version. Looked at before a viewer is asked to open it, as it would say less, later.
 
-use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
 use std::path::Path;
 
@@ -80,7 +79,7 @@ pub fn check_rrd(path: &Path) -> Result<(), RrdFault> {
     if path.is_dir() {
         return Err(unreadable(&"it is a folder"));
     }
-    let mut input = File::open(path).map_err(|error| unreadable(&error))?;
+    let mut input = crate::file::open(path).map_err(|error| unreadable(&error))?;
     let length = input.metadata().map_err(|error| unreadable(&error))?.len();
     let mut head = Vec::new();
     let wanted = StreamHeader::ENCODED_SIZE_BYTES as u64;

@@ -132,7 +132,7 @@ impl BurrProfile {
     /// # Errors
     /// The file cannot be read, or a row is not of this form.
     pub fn from_csv(path: &Path) -> Result<Self, WorkpieceError> {
-        let file = std::fs::File::open(path).map_err(|source| WorkpieceError::Read {
+        let file = crate::file::open(path).map_err(|source| WorkpieceError::Read {
             file: path.to_owned(),
             source,
         })?;

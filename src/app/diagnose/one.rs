@@ -52,7 +52,7 @@ pub(super) fn is_case(folder: &Path) -> bool {
 
 /// The diagnosis that stands complete in a folder.
 pub(super) fn complete(folder: &Path) -> Option<Answer> {
-    let text = std::fs::read_to_string(folder.join(DIAGNOSIS)).ok()?;
+    let text = crate::file::read_text(folder.join(DIAGNOSIS)).ok()?;
     let answer: Answer = serde_json::from_str(&text).ok()?;
     (answer.details.schema == DETAILS_SCHEMA && is_complete(folder)).then_some(answer)
 }

@@ -134,7 +134,7 @@ impl Worker {
 }
 
 fn says_rig(file: &Path) -> bool {
-    let text = std::fs::read_to_string(file).unwrap_or_default();
+    let text = crate::file::read_text(file).unwrap_or_default();
     text.lines().any(|line| line.trim() == "[device]") && text.contains("[sensors]")
 }
 

@@ -3,7 +3,6 @@
 //! Viewer and recordings come from one address, so no other page may read them: `/` leads to the viewer with the recordings that are served,
 //! `/1/recording.rrd` is the first of them. One that is still being made is served as it grows.
 
-use std::fs::File;
 use std::net::{Ipv4Addr, TcpListener};
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -131,7 +130,7 @@ impl WebPage {
         ];
         let sent = match recording {
             None => request.respond(Response::empty(404)),
-            Some(Served::File(file)) => match File::open(file) {
+            Some(Served::File(file)) => match crate::file::open(file) {
                 Err(_) => request.respond(Response::empty(404)),
                 Ok(file) => {
                     let length = file.metadata().ok().map(|data| data.len() as usize);

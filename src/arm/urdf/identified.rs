@@ -36,7 +36,7 @@ pub fn identified_urdf(
     found: &[Identified],
 ) -> Result<Option<String>, ArmError> {
     let source = Source::read(path)?;
-    let Ok(text) = std::fs::read_to_string(path) else {
+    let Ok(text) = crate::file::read_text(path) else {
         return Ok(None);
     };
     let Ok(document) = Document::parse(&text) else {

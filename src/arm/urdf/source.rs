@@ -20,7 +20,7 @@ pub(super) struct Source {
 impl Source {
     /// Reads and checks a file; one with macros is given to the program `xacro` first.
     pub fn read(path: &Path) -> Result<Self, ArmError> {
-        let bytes = std::fs::read(path).map_err(|source| ArmError::Unreadable {
+        let bytes = crate::file::read(path).map_err(|source| ArmError::Unreadable {
             file: path.to_path_buf(),
             source,
         })?;

@@ -9,15 +9,16 @@ use super::standard;
 /// # Errors
 /// Its messages are of a kind that cannot be read.
 pub(super) fn definition(owner: &There) -> Result<Definition, String> {
-    let Some((name, encoding, data)) = &owner.schema else {
+    let Some(schema) = &owner.schema else {
         return Err("of messages without a definition".to_owned());
     };
+    let name = schema.name.as_str();
     let parse = |text: &str| {
         let read = Definition::parse(name, text);
         read.map_err(|cause| format!("of messages whose definition cannot be read ({cause})"))
     };
-    match (owner.encoding.as_str(), encoding.as_str()) {
-        ("cdr", "ros2msg") => parse(&String::from_utf8_lossy(data)),
+    match (owner.encoding.as_str(), schema.encoding.as_str()) {
+        ("cdr", "ros2msg") => parse(&String::from_utf8_lossy(&schema.data)),
         ("cdr", "") => match standard::definition(name) {
             Some(text) => parse(&text),
             None => Err(format!(
@@ -26,7 +27,8 @@ pub(super) fn definition(owner: &There) -> Result<Definition, String> {
             )),
         },
         (own, _) => Err(format!(
-            "of messages of encoding `{own}` with a definition of encoding `{encoding}`"
+            "of messages of encoding `{own}` with a definition of encoding `{}`",
+            schema.encoding
         )),
     }
 }

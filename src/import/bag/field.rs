@@ -6,16 +6,23 @@ use re_ros_msg::deserialize::primitive_array::PrimitiveArray;
 use re_ros_msg::deserialize::{MapResolver, TypeResolver, Value, decode_message};
 use re_ros_msg::message_spec::{ArraySize, BuiltInType, MessageSpecification, Type};
 
+use super::extent::{extent, measure};
+use crate::file::guarded;
+
 /// Elements that are named of a list whose length only its messages know.
 const NAMED: usize = 2;
 /// Elements that are named of any list, at most.
 const MOST_NAMED: usize = 64;
-/// Depth of a message in messages that nobody has.
-const DEEPEST: usize = 32;
+/// Paths of a message that are named, at most.
+const MOST_PATHS: usize = 4096;
+/// Bytes from which on a message is measured before it is read.
+const LONG: usize = 1 << 20;
 
 /// Definition of a topic's messages.
 pub(super) struct Definition {
     schema: MessageSchema,
+    /// Whether its messages hold lists of messages.
+    has_lists: bool,
 }
 
 /// A way into a message.
@@ -96,8 +103,15 @@ impl Definition {
 
     /// Reads the definition of the messages of this name.
     pub fn parse(name: &str, text: &str) -> Result<Self, String> {
-        let schema = MessageSchema::parse(name, text).map_err(|cause| format!("{cause:#}"))?;
-        Ok(Self { schema })
+        let parsed = guarded(|| MessageSchema::parse(name, text))?;
+        let schema = parsed.map_err(|cause| format!("{cause:#}"))?;
+        let mut definition = Self {
+            schema,
+            has_lists: false,
+        };
+        let extent = extent(&definition.schema.spec, &definition.resolver())?;
+        definition.has_lists = extent.has_lists;
+        Ok(definition)
     }
 
     fn resolver(&self) -> MapResolver<'_> {
@@ -132,62 +146,33 @@ impl Definition {
             }
         }
         let kind = match inside? {
-            Type::BuiltIn(BuiltInType::String(_) | BuiltInType::WString(_)) => {
-                Kind::Other("a text")
-            }
-            Type::BuiltIn(_) => Kind::Number,
+            Type::BuiltIn(own) => of_built_in(own),
             Type::Array { .. } => Kind::Other("a list"),
-            Type::Complex(kind) => {
-                let spec = resolver.resolve(scope, kind)?;
-                let names: Vec<&str> = spec.fields.iter().map(|f| f.name.as_str()).collect();
-                if names == ["sec", "nanosec"] {
-                    Kind::Stamp
-                } else {
-                    Kind::Other("a message")
-                }
-            }
+            Type::Complex(kind) => of_message(resolver.resolve(scope, kind)?),
         };
         Some((Field(steps), kind))
     }
 
     /// Paths of all numbers.
     pub fn numbers(&self) -> Vec<String> {
-        self.paths()
-            .into_iter()
-            .filter(|path| {
-                self.field(path)
-                    .is_some_and(|(_, kind)| kind == Kind::Number)
-            })
-            .collect()
+        self.paths(Kind::Number)
     }
 
     /// Paths of all stamps.
     pub fn times(&self) -> Vec<String> {
-        self.paths()
-            .into_iter()
-            .filter(|path| {
-                self.field(path)
-                    .is_some_and(|(_, kind)| kind == Kind::Stamp)
-            })
-            .collect()
+        self.paths(Kind::Stamp)
     }
 
-    /// All paths, of lists of unknown length the first elements.
-    fn paths(&self) -> Vec<String> {
-        let mut found = Vec::new();
+    /// Paths of a kind, of lists of unknown length the first elements.
+    fn paths(&self, kind: Kind) -> Vec<String> {
         let resolver = self.resolver();
+        let mut found = Vec::new();
         for field in &self.schema.spec.fields {
             let start = field.name.clone();
-            walk(
-                &resolver,
-                &self.schema.spec,
-                &field.ty,
-                start,
-                0,
-                &mut found,
-            );
+            walk(&resolver, &self.schema.spec, &field.ty, start, &mut found);
         }
-        found
+        let own = found.into_iter().filter(|(_, own)| *own == kind);
+        own.map(|(path, _)| path).collect()
     }
 
     /// Reads a message.
@@ -195,9 +180,21 @@ impl Definition {
         // The encapsulation header of CDR (OMG DDS-RTPS 2.5, 10.2): its second byte says the byte order.
         let body = data.get(4..).ok_or("it has no header")?;
         let (spec, resolver) = (&self.schema.spec, self.resolver());
+        // Room for a list is made as its length claims.
+        let is_measured = self.has_lists || body.len() > LONG;
         let value = match data[..2] {
-            [0, 0] => decode_message(&mut CdrReader::<BigEndian>::new(body), spec, &resolver),
-            [0, 1] => decode_message(&mut CdrReader::<LittleEndian>::new(body), spec, &resolver),
+            [0, 0] => {
+                measure(&mut CdrReader::<BigEndian>::new(body), spec, &resolver)?;
+                let mut reader = CdrReader::<BigEndian>::new(body);
+                guarded(|| decode_message(&mut reader, spec, &resolver))?
+            }
+            [0, 1] => {
+                if is_measured {
+                    measure(&mut CdrReader::<LittleEndian>::new(body), spec, &resolver)?;
+                }
+                let mut reader = CdrReader::<LittleEndian>::new(body);
+                guarded(|| decode_message(&mut reader, spec, &resolver))?
+            }
             _ => {
                 return Err(format!(
                     "its header is {:02x?}, expected plain CDR",
@@ -214,37 +211,47 @@ fn walk(
     scope: &MessageSpecification,
     ty: &Type,
     path: String,
-    depth: usize,
-    found: &mut Vec<String>,
+    found: &mut Vec<(String, Kind)>,
 ) {
+    if found.len() >= MOST_PATHS {
+        return;
+    }
     match ty {
-        Type::BuiltIn(_) => found.push(path),
+        Type::BuiltIn(own) => found.push((path, of_built_in(own))),
         Type::Array { ty, size } => {
             let count = match size {
                 ArraySize::Fixed(count) => (*count).min(MOST_NAMED),
                 ArraySize::Bounded(_) | ArraySize::Unbounded => NAMED,
             };
             for index in 0..count {
-                walk(
-                    resolver,
-                    scope,
-                    ty,
-                    format!("{path}[{index}]"),
-                    depth,
-                    found,
-                );
+                walk(resolver, scope, ty, format!("{path}[{index}]"), found);
             }
         }
         Type::Complex(kind) => {
-            found.push(path.clone());
-            let Some(spec) = resolver.resolve(scope, kind).filter(|_| depth < DEEPEST) else {
+            let Some(spec) = resolver.resolve(scope, kind) else {
                 return;
             };
+            found.push((path.clone(), of_message(spec)));
             for field in &spec.fields {
                 let inner = format!("{path}.{}", field.name);
-                walk(resolver, spec, &field.ty, inner, depth + 1, found);
+                walk(resolver, spec, &field.ty, inner, found);
             }
         }
+    }
+}
+
+fn of_built_in(own: &BuiltInType) -> Kind {
+    match own {
+        BuiltInType::String(_) | BuiltInType::WString(_) => Kind::Other("a text"),
+        _ => Kind::Number,
+    }
+}
+
+fn of_message(spec: &MessageSpecification) -> Kind {
+    let names: Vec<&str> = spec.fields.iter().map(|f| f.name.as_str()).collect();
+    match names == ["sec", "nanosec"] {
+        true => Kind::Stamp,
+        false => Kind::Other("a message"),
     }
 }
 

@@ -1,14 +1,22 @@
 //! A bag looked at: the fields of its topics that are numbers, those of joints by their names, with their values.
 
+use std::collections::HashMap;
 use std::path::Path;
+use std::rc::Rc;
 
 use super::definition::definition;
 use super::field::{Definition, Field, Kind, Picked};
 use super::message::There;
 use super::open;
 use super::store::{Scan, Stores};
+use crate::file::Limit;
 use crate::import::error::ImportError;
 use crate::import::log::EPOCH;
+
+/// Fields of a bag, frames of a field and remarks that are kept, at most.
+const MOST_FIELDS: usize = 20_000;
+const MOST_FRAMES: usize = 64;
+const MOST_NOTES: usize = 20;
 
 /// Overview of a bag.
 pub(in crate::import) struct Glance {
@@ -44,24 +52,36 @@ pub(in crate::import) struct FieldSeen {
 struct Topic {
     name: String,
     message: String,
-    definition: Definition,
+    definition: Rc<Definition>,
     fields: Vec<(FieldSeen, Field, Picked)>,
     stamp: Option<Field>,
     is_new: bool,
 }
 
 /// Looks through a bag; topics whose messages cannot be read are left out.
-pub(in crate::import) fn glance(path: &Path) -> Result<Glance, ImportError> {
-    let stores = open(path)?;
+pub(in crate::import) fn glance(path: &Path, limit: Limit) -> Result<Glance, ImportError> {
+    let stores = open(path, limit)?;
     let scan = Scan::of(&stores);
     let mut topics: Vec<Topic> = Vec::new();
     let mut notes = notes(&stores, &scan);
+    // Many topics may share a definition.
+    let mut known: HashMap<_, Result<Rc<Definition>, String>> = HashMap::new();
     for there in &scan.there {
-        match definition(there) {
-            Ok(definition) => topics.push(Topic::new(there, definition)),
+        let key = (there.schema.as_ref().map(Rc::as_ptr), &there.encoding);
+        let read = known
+            .entry(key)
+            .or_insert_with(|| definition(there).map(Rc::new));
+        match read {
+            Ok(definition) => topics.push(Topic::new(there, Rc::clone(definition))),
             Err(found) => notes.push(format!("{} cannot be read, {found}", there.topic)),
         }
     }
+    if notes.len() > MOST_NOTES {
+        let more = notes.len() - MOST_NOTES;
+        notes.truncate(MOST_NOTES);
+        notes.push(format!("and {more} more"));
+    }
+    let mut left = MOST_FIELDS;
     let stamped = !topics.is_empty() && topics.iter().all(|topic| topic.stamp.is_some());
     let (mut zero_stamps, mut latest) = ([0, 0], 0);
     stores.visit(|message| -> Result<(), ImportError> {
@@ -80,7 +100,8 @@ pub(in crate::import) fn glance(path: &Path) -> Result<Glance, ImportError> {
             latest = latest.max(stamp);
         }
         if topic.is_new {
-            topic.fields = fields(topic, &read.joints());
+            topic.fields = fields(topic, &read.joints(), left);
+            left -= topic.fields.len();
             topic.is_new = false;
         }
         for (seen, field, picked) in &mut topic.fields {
@@ -91,6 +112,7 @@ pub(in crate::import) fn glance(path: &Path) -> Result<Glance, ImportError> {
             };
             seen.values.extend(number);
             if let Some(frame) = read.frame().filter(|_| number.is_some())
+                && seen.frames.len() < MOST_FRAMES
                 && !seen.frames.contains(&frame)
             {
                 seen.frames.push(frame);
@@ -113,8 +135,8 @@ pub(in crate::import) fn glance(path: &Path) -> Result<Glance, ImportError> {
 }
 
 impl Topic {
-    fn new(there: &There, definition: Definition) -> Self {
-        let message = there.schema.as_ref().map(|(name, ..)| name.clone());
+    fn new(there: &There, definition: Rc<Definition>) -> Self {
+        let message = there.schema.as_ref().map(|schema| schema.name.clone());
         let stamp = definition.field("header.stamp");
         let stamp = stamp.filter(|(_, kind)| *kind == Kind::Stamp);
         Self {
@@ -142,7 +164,7 @@ fn notes(stores: &Stores, scan: &Scan) -> Vec<String> {
 }
 
 /// Fields of a topic's messages: elements of joints by their names, others by their paths.
-fn fields(topic: &Topic, joints: &[String]) -> Vec<(FieldSeen, Field, Picked)> {
+fn fields(topic: &Topic, joints: &[String], most: usize) -> Vec<(FieldSeen, Field, Picked)> {
     let definition = &topic.definition;
     let seen = |path: &str, joint: Option<&String>| FieldSeen {
         column: format!("{}.{path}", topic.name),
@@ -163,7 +185,7 @@ fn fields(topic: &Topic, joints: &[String]) -> Vec<(FieldSeen, Field, Picked)> {
         let Some((field, _)) = definition.field(&format!("{list}[0]")) else {
             continue;
         };
-        for joint in joints {
+        for joint in joints.iter().take(most - found.len()) {
             let picked = Picked {
                 joint: Some(joint.clone()),
                 frame: None,
@@ -182,6 +204,9 @@ fn fields(topic: &Topic, joints: &[String]) -> Vec<(FieldSeen, Field, Picked)> {
     for path in definition.numbers() {
         if in_list(&path) || noise(&path) {
             continue;
+        }
+        if found.len() == most {
+            break;
         }
         if let Some((field, _)) = definition.field(&path) {
             found.push((seen(&path, None), field, Picked::default()));

@@ -30,7 +30,7 @@ impl Listed {
             Ok(about) if about.len() > LARGEST => return Err("it is too large".to_owned()),
             Ok(_) => {}
         }
-        let text = std::fs::read_to_string(&path).map_err(|cause| cause.to_string())?;
+        let text = crate::file::read_text(&path).map_err(|cause| cause.to_string())?;
         Self::parse(&text)
     }
 

@@ -1,15 +1,24 @@
 //! A message of a bag, wherever it is kept.
 
 use std::borrow::Cow;
+use std::rc::Rc;
 
-use crate::import::packed::{LARGEST_MESSAGE, unpacked};
+use crate::import::packed::{Budget, unpacked_message};
 
-/// A topic that is there, with the name, the encoding and the text of its definition.
+/// Definition of a kind of messages: its name, its encoding and its text. Many topics may share one.
+#[derive(Debug, PartialEq, Eq, Default)]
+pub(super) struct Schema {
+    pub name: String,
+    pub encoding: String,
+    pub data: Vec<u8>,
+}
+
+/// A topic that is there.
 #[derive(Debug, Clone)]
 pub(super) struct There {
     pub topic: String,
     pub encoding: String,
-    pub schema: Option<(String, String, Vec<u8>)>,
+    pub schema: Option<Rc<Schema>>,
 }
 
 /// A message.
@@ -23,12 +32,17 @@ pub(super) struct Message<'a> {
     pub published: u64,
     /// Its bytes.
     pub data: &'a [u8],
+    /// What all messages may come to.
+    pub budget: &'a Budget,
 }
 
 impl Message<'_> {
     /// Its bytes, unpacked where it was packed by itself. Plain ones begin with a zero, as CDR does.
     pub fn plain(&self) -> Result<Cow<'_, [u8]>, String> {
-        let plain = unpacked(self.data, LARGEST_MESSAGE)?;
+        let plain = unpacked_message(self.data)?;
+        if let Some(plain) = &plain {
+            self.budget.take(plain.len() as u64)?;
+        }
         Ok(plain.map_or(Cow::Borrowed(self.data), Cow::Owned))
     }
 }

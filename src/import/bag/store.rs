@@ -2,8 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::convert::Infallible;
-use std::fs::File;
-use std::io::Read;
+use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
@@ -11,7 +10,8 @@ use tempfile::TempDir;
 use super::listed::Listed;
 use super::message::{Message, There};
 use super::{mcap_file, sqlite_file};
-use crate::import::packed::{LARGEST_FILE, begins_packed, plain_name, unpacked};
+use crate::file::{self, Limit};
+use crate::import::packed::{Budget, GZIP, ZSTD, begins_packed, plain_name, unpacked};
 use crate::import::rows::Remark;
 use crate::import::signature;
 
@@ -19,6 +19,8 @@ use crate::import::signature;
 const ENDINGS: [&str; 2] = ["mcap", "db3"];
 /// Beginning of a SQLite file (its format, 1.3).
 const SQLITE: &[u8] = b"SQLite format 3\0";
+/// First bytes of a file that are looked at.
+const LOOKED_AT: u64 = 1 << 16;
 
 /// The files of a bag, in order.
 pub(super) struct Stores {
@@ -29,11 +31,17 @@ pub(super) struct Stores {
     counted: Option<u64>,
     /// Remarks on its files.
     pub notes: Vec<Remark>,
+    limit: Limit,
+    /// Bytes of its files.
+    size: u64,
 }
 
 /// One of them.
 enum Store {
-    Mcap(Vec<u8>),
+    /// An MCAP file.
+    Mcap(PathBuf),
+    /// One that was packed.
+    Unpacked(Vec<u8>),
     /// A SQLite file, and the folder of the copy that it is, if it is one.
     Sqlite(
         PathBuf,
@@ -43,12 +51,14 @@ enum Store {
 
 impl Stores {
     /// Opens a file, or all of a folder's.
-    pub fn open(path: &Path) -> Result<Self, String> {
+    pub fn open(path: &Path, limit: Limit) -> Result<Self, String> {
         let mut stores = Self {
             all: Vec::new(),
             missing: Vec::new(),
             counted: None,
             notes: Vec::new(),
+            limit,
+            size: 0,
         };
         if !path.is_dir() {
             stores.add(path)?;
@@ -88,30 +98,49 @@ impl Stores {
 
     /// Opens a file as what it begins with says, whatever its name.
     fn add(&mut self, path: &Path) -> Result<(), String> {
-        let bytes = std::fs::read(path).map_err(|cause| cause.to_string())?;
-        let plain = unpacked(&bytes, LARGEST_FILE)?;
-        let is_packed = plain.is_some();
-        let bytes = plain.unwrap_or(bytes);
-        if bytes.starts_with(mcap::MAGIC) {
-            self.all.push(Store::Mcap(bytes));
-            return Ok(());
-        }
-        if !bytes.starts_with(SQLITE) {
-            return Err(match signature::of_bytes(&bytes) {
+        let unread = |cause: std::io::Error| cause.to_string();
+        let file = file::open(path).map_err(unread)?;
+        self.size += file.metadata().map_err(unread)?.len();
+        let mut start = Vec::new();
+        (file.take(LOOKED_AT).read_to_end(&mut start)).map_err(unread)?;
+        let packed = match start.starts_with(GZIP) || start.starts_with(ZSTD) {
+            true => {
+                let bytes = file::read_up_to(path, self.limit.whole()).map_err(unread)?;
+                unpacked(&bytes, self.limit)?
+            }
+            false => None,
+        };
+        let bytes = packed.as_deref().unwrap_or(&start);
+        if !bytes.starts_with(mcap::MAGIC) && !bytes.starts_with(SQLITE) {
+            return Err(match signature::of_bytes(bytes) {
                 Some(other) => format!("it is {}, and no bag in MCAP or SQLite", other.what),
                 None => "it is no MCAP and no SQLite bag: it does not start as one".to_owned(),
             });
         }
+        if bytes.starts_with(mcap::MAGIC) {
+            self.all.push(match packed {
+                Some(bytes) => Store::Unpacked(bytes),
+                None => Store::Mcap(path.to_owned()),
+            });
+            return Ok(());
+        }
         let journals = sqlite_file::journals(path);
-        if !is_packed && journals.is_empty() {
+        if packed.is_none() && journals.is_empty() {
             self.all.push(Store::Sqlite(path.to_owned(), None));
             return Ok(());
         }
         let failed = |cause: std::io::Error| format!("it cannot be copied to be read: {cause}");
         let folder = tempfile::tempdir().map_err(failed)?;
         let copy = folder.path().join("bag.db3");
-        std::fs::write(&copy, bytes).map_err(failed)?;
+        match packed {
+            Some(bytes) => std::fs::write(&copy, bytes).map_err(failed)?,
+            None => {
+                std::fs::copy(path, &copy).map_err(failed)?;
+            }
+        }
         for journal in journals {
+            let about = file::check(&journal).map_err(failed)?;
+            self.size += about.len();
             let ending = if short(&journal).ends_with("-wal") {
                 "bag.db3-wal"
             } else {
@@ -133,6 +162,7 @@ impl Stores {
         mut show: impl FnMut(&Message<'_>) -> Result<(), E>,
     ) -> Result<Option<String>, E> {
         let mut before = 0;
+        let budget = Budget::new(self.limit, self.size);
         for store in &self.all {
             let mut last = before;
             let mut counted = |message: &Message<'_>| {
@@ -143,8 +173,14 @@ impl Stores {
                 })
             };
             let cause = match store {
-                Store::Mcap(bytes) => mcap_file::visit(bytes, &mut counted)?,
-                Store::Sqlite(path, _) => sqlite_file::visit(path, &mut counted)?,
+                Store::Mcap(path) => match file::open(path) {
+                    Ok(file) => mcap_file::visit(&mut BufReader::new(file), &budget, &mut counted)?,
+                    Err(cause) => return Ok(Some(cause.to_string())),
+                },
+                Store::Unpacked(bytes) => {
+                    mcap_file::visit(&mut bytes.as_slice(), &budget, &mut counted)?
+                }
+                Store::Sqlite(path, _) => sqlite_file::visit(path, &budget, &mut counted)?,
             };
             if cause.is_some() {
                 return Ok(cause);
@@ -186,7 +222,7 @@ fn is_named_as_bag(file: &Path) -> bool {
 pub(in crate::import) fn is_packed(path: &Path) -> bool {
     let start = || -> Option<Vec<u8>> {
         let mut start = Vec::new();
-        let file = File::open(path).ok()?;
+        let file = file::open(path).ok()?;
         begins_packed(file)?
             .take(SQLITE.len() as u64)
             .read_to_end(&mut start)

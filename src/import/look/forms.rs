@@ -5,6 +5,7 @@ use std::path::Path;
 use super::seen::{Because, Cells, Line, Looked, SaidUnit, Seen, TimeSeen};
 use super::time::toml_text;
 use super::{lerobot, names, text, units};
+use crate::file::Limit;
 use crate::import::encoding::DetectedEncoding;
 use crate::import::error::ImportError;
 use crate::import::map::{Column, Pressure};
@@ -22,12 +23,12 @@ fn form(name: &str, why: &str) -> Vec<Line> {
 
 /// Looks at a Parquet table; columns that hold neither numbers nor stamps are left out.
 pub(super) fn parquet(path: &Path) -> Result<Looked, ImportError> {
-    let names = Table::open(path)?.names();
+    let names = Table::open(path, Limit::default())?.names();
     let robot = lerobot::feature_names(path);
     let mut columns = Vec::new();
     for (place, name) in names.iter().enumerate() {
         // A column that cannot be read is none to choose.
-        let Ok(read) = Table::open(path)?.read(&[place]) else {
+        let Ok(read) = Table::open(path, Limit::default())?.read(&[place]) else {
             continue;
         };
         let Some(cells) = read.into_iter().next().map(cells) else {
@@ -107,7 +108,7 @@ fn of_texts(texts: Vec<Option<String>>) -> Cells {
 
 /// Looks at the channels of a TDMS file.
 pub(super) fn tdms(path: &Path) -> Result<Looked, ImportError> {
-    let contents = tdms_log::contents(path)?;
+    let contents = tdms_log::contents(path, Limit::default())?;
     let readable = contents
         .channels
         .iter()
@@ -151,7 +152,7 @@ pub(super) fn tdms(path: &Path) -> Result<Looked, ImportError> {
 
 /// Looks at the sheet of a spreadsheet that holds the most numbers.
 pub(super) fn spreadsheet(path: &Path) -> Result<Looked, ImportError> {
-    let sheet = spreadsheet::likely(path)?;
+    let sheet = spreadsheet::likely(path, Limit::default())?;
     let detected = DetectedEncoding {
         name: "utf-8".to_owned(),
         reason: "",
@@ -202,7 +203,7 @@ pub(super) fn mat(path: &Path) -> Result<Looked, ImportError> {
 
 /// Looks at a bag: fields of its topics that are numbers.
 pub(super) fn bag(path: &Path) -> Result<Looked, ImportError> {
-    let glance = bag::glance::glance(path)?;
+    let glance = bag::glance::glance(path, Limit::default())?;
     let seen = |field: bag::glance::FieldSeen| {
         let joint = field.joint.clone();
         let name = match &joint {

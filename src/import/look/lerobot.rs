@@ -16,7 +16,7 @@ const ABOVE: usize = 4;
 pub(super) fn feature_names(path: &Path) -> BTreeMap<String, String> {
     let whole = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let mut folders = whole.ancestors().skip(1).take(ABOVE);
-    let info = folders.find_map(|folder| std::fs::read_to_string(folder.join(INFO)).ok());
+    let info = folders.find_map(|folder| crate::file::read_text(folder.join(INFO)).ok());
     let info: Option<Value> = info.and_then(|text| serde_json::from_str(&text).ok());
     let features = info.as_ref().and_then(|info| info["features"].as_object());
     let mut all = BTreeMap::new();

@@ -8,6 +8,7 @@ use super::marks::marks;
 use super::seen::{Because, Cells, Line, Looked, SaidUnit, Seen, TimeSeen};
 use super::table::{self, Kind, NoTable, Table, kind};
 use super::{long, names, rate, units};
+use crate::file::Limit;
 use crate::import::encoding::DetectedEncoding;
 use crate::import::error::ImportError;
 use crate::import::map::Column;
@@ -25,7 +26,7 @@ type Numbered = (u64, Record);
 
 /// Looks at a text.
 pub(super) fn look(path: &Path) -> Result<Looked, ImportError> {
-    let (text, detected) = content(path, None)?;
+    let (text, detected) = content(path, None, Limit::default())?;
     look_at(path, &text, &detected)
 }
 

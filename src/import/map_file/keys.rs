@@ -72,6 +72,8 @@ keys! {
         accept_unused_rows: bool = "accept_unused_rows", or false, shown "such a log is refused, and why they are not said";
         /// `true` uses what can be read of a log that is cut off; not for Parquet, of which nothing can
         accept_truncated: Option<bool> = "accept_truncated", shown "such a log is refused, and what could be read of it said";
+        /// what the log may come to when it is unpacked and read, in MB
+        largest_megabytes: Option<usize> = "largest_mb", shown "400; packed 200 times its size, and 256 at least";
         /// where the times stand
         time: Option<TimeKeys> = "time", shown "refused, unless there is a `sample_rate_hz`; of a bag the times at which messages were logged, of TDMS those that its waveforms say";
         /// samples a second, where no column holds times; with `time` the column counts samples, and has no unit

@@ -77,6 +77,8 @@ struct Object {
     numbers: Vec<f64>,
     stamps: Vec<Option<i64>>,
     problem: Option<String>,
+    /// Whether it is among those of the segment.
+    is_active: bool,
 }
 
 /// The objects seen so far, and which of them a segment's chunks hold.
@@ -86,6 +88,8 @@ struct Reader {
     places: BTreeMap<String, usize>,
     /// Objects of the segment, in the order of their data.
     active: Vec<usize>,
+    /// Those with data in each chunk and the bytes of a chunk, while the metadata stay as they are.
+    layout: Option<(Vec<(usize, RawIndex)>, usize)>,
 }
 
 /// Reads a file.
@@ -147,8 +151,11 @@ impl Reader {
         from: &mut Bytes<'_>,
         contents: u32,
     ) -> Result<Result<(), EndOfData>, String> {
+        self.layout = None;
         if contents & NEW_OBJECTS != 0 {
-            self.active.clear();
+            for place in self.active.drain(..) {
+                self.objects[place].is_active = false;
+            }
         }
         let mut refused = None;
         let mut read = || -> Result<(), EndOfData> {
@@ -158,12 +165,12 @@ impl Reader {
                 let object = &mut self.objects[place];
                 match index(from, object)? {
                     Ok(has_data) => {
-                        let is_active = self.active.contains(&place);
-                        if has_data && !is_active {
+                        if has_data && !object.is_active {
                             self.active.push(place);
-                        } else if !has_data {
+                        } else if !has_data && object.is_active {
                             self.active.retain(|other| *other != place);
                         }
+                        object.is_active = has_data;
                     }
                     Err(cause) => {
                         refused = Some(cause);
@@ -205,29 +212,20 @@ impl Reader {
 
     /// Reads the chunks of a segment; what is left of one that is not whole is left out.
     fn chunks(&mut self, mut raw: &[u8], is_big: bool, is_interleaved: bool) {
-        let indices: Vec<(usize, RawIndex)> = (self.active.iter())
-            .filter_map(|place| Some((*place, self.objects[*place].index?)))
-            .filter(|(_, index)| index.size > 0)
-            .collect();
-        let size = indices
-            .iter()
-            .try_fold(0u64, |sum, (_, index)| sum.checked_add(index.size));
-        let Some(size) = size
-            .and_then(|size| usize::try_from(size).ok())
-            .filter(|size| *size > 0)
-        else {
+        let (indices, size) = self.layout.take().unwrap_or_else(|| self.laid_out());
+        if size == 0 {
+            self.layout = Some((indices, size));
             return;
-        };
+        }
         while raw.len() >= size {
             let (chunk, rest) = raw.split_at(size);
             raw = rest;
             let mut bytes = Bytes::new(chunk, is_big);
             if is_interleaved {
-                let rows = indices
-                    .iter()
-                    .map(|(_, index)| index.values)
-                    .max()
-                    .unwrap_or(0);
+                // Texts cannot stand so, and their number says nothing of their bytes.
+                let of_numbers = indices.iter().filter(|(_, index)| index.kind != TEXT);
+                let rows = of_numbers.map(|(_, index)| index.values).max();
+                let rows = rows.unwrap_or(0);
                 for _ in 0..rows {
                     for (place, index) in &indices {
                         self.objects[*place].take(&mut bytes, index.kind);
@@ -246,6 +244,20 @@ impl Reader {
                 }
             }
         }
+        self.layout = Some((indices, size));
+    }
+
+    /// Objects with data in each chunk of the segment, and the bytes of a chunk; 0 where it cannot be one.
+    fn laid_out(&self) -> (Vec<(usize, RawIndex)>, usize) {
+        let indices: Vec<(usize, RawIndex)> = (self.active.iter())
+            .filter_map(|place| Some((*place, self.objects[*place].index?)))
+            .filter(|(_, index)| index.size > 0)
+            .collect();
+        let size = indices
+            .iter()
+            .try_fold(0u64, |sum, (_, index)| sum.checked_add(index.size));
+        let size = size.and_then(|size| usize::try_from(size).ok());
+        (indices, size.unwrap_or(0))
     }
 
     /// The channels that hold data.

@@ -53,7 +53,7 @@ pub(in crate::import) fn read(
     form: &TextForm,
     map: &FileMap,
 ) -> Result<Rows, ImportError> {
-    let (text, _) = content(path, form.encoding.as_deref())?;
+    let (text, _) = content(path, form.encoding.as_deref(), map.limit)?;
     read_content(path, &text, form, map)
 }
 

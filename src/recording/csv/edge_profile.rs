@@ -61,7 +61,8 @@ impl EdgeProfile {
     /// The file cannot be read, or a field is no number.
     pub fn read(path: &Path) -> Result<Self, RecordingError> {
         let fail = |error: csv::Error| RecordingError::read(path, error);
-        let mut reader = csv::Reader::from_path(path).map_err(fail)?;
+        let file = crate::file::open(path).map_err(|e| RecordingError::read(path, e))?;
+        let mut reader = csv::Reader::from_reader(file);
         let mut profile = Self::default();
         for row in reader.deserialize::<[f64; 5]>() {
             let [place, before, after, leg, removed] = row.map_err(fail)?;

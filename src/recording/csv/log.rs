@@ -26,7 +26,7 @@ pub struct Log {
 /// # Errors
 /// A file that cannot be read, one without stamps, a field that is no number, a stamp before the one above it.
 pub fn read_log_csv(path: &Path, wanted: impl Fn(&str) -> bool) -> Result<Log, RecordingError> {
-    let text = std::fs::read_to_string(path).map_err(|e| RecordingError::read(path, e))?;
+    let text = crate::file::read_text(path).map_err(|e| RecordingError::read(path, e))?;
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .from_reader(text.trim_start_matches('\u{feff}').as_bytes());

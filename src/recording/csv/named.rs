@@ -19,7 +19,7 @@ pub struct NamedColumns {
 /// # Errors
 /// A file that cannot be read.
 pub fn header_of(path: &Path) -> Result<Vec<String>, RecordingError> {
-    let text = std::fs::read_to_string(path).map_err(|e| RecordingError::read(path, e))?;
+    let text = crate::file::read_text(path).map_err(|e| RecordingError::read(path, e))?;
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
@@ -32,7 +32,7 @@ pub fn header_of(path: &Path) -> Result<Vec<String>, RecordingError> {
 /// # Errors
 /// A file that cannot be read, a column that it lacks, a field that is no number.
 pub fn read_named(path: &Path, names: &[&str]) -> Result<NamedColumns, RecordingError> {
-    let text = std::fs::read_to_string(path).map_err(|e| RecordingError::read(path, e))?;
+    let text = crate::file::read_text(path).map_err(|e| RecordingError::read(path, e))?;
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .from_reader(text.trim_start_matches('\u{feff}').as_bytes());

@@ -28,7 +28,7 @@ struct Places {
 
 /// Reads a file's fields.
 pub(super) fn read(path: &Path, columns: &[Column]) -> Result<ParsedTable, RecordingError> {
-    let text = std::fs::read_to_string(path).map_err(|e| RecordingError::read(path, e))?;
+    let text = crate::file::read_text(path).map_err(|e| RecordingError::read(path, e))?;
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
