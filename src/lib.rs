@@ -5,6 +5,7 @@
 //! - [`file`]: files opened for reading: regular ones alone, up to a limit
 //! - [`listed`]: enums whose variants are listed and named
 //! - [`unit`]: units, each declared once
+//! - [`xml`]: XML within limits
 //! - [`stats`]: median, quantiles, distributions: one rule for each
 //! - [`quantity`]: numbers with their units as people read them
 //! - [`physics`]: the pneumatic equations, one effect a file
@@ -117,6 +118,7 @@ pub mod vary;
 #[cfg(feature = "viewer")]
 pub mod viewer;
 pub mod workpiece;
+pub mod xml;
 
 pub use case::{Case, Diagnosed, diagnose};
 pub use cell::Cell;

@@ -97,7 +97,11 @@ fn arm(cell: &Cell, frames: &FrameLog) -> Vec<SceneBody> {
 }
 
 fn arm_entity(link: &str) -> String {
-    format!("arm/{link}")
+    // A path has no parts without letters; a link's name may have.
+    let parts = link
+        .split('/')
+        .map(|part| if part.is_empty() { "_" } else { part });
+    format!("arm/{}", parts.collect::<Vec<_>>().join("/"))
 }
 
 /// Appearance of a link of the arm; nothing beyond the last.

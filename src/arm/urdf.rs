@@ -15,6 +15,7 @@ mod joints;
 mod masses;
 mod mesh;
 mod mount;
+mod robot;
 mod solid;
 mod source;
 mod tree;
@@ -23,6 +24,8 @@ mod walk;
 mod xacro;
 mod xml_fault;
 
+#[cfg(test)]
+mod hostile_tests;
 #[cfg(test)]
 mod said_tests;
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! The bodies of a cell and the pairs of them that are checked.
 
+use std::collections::BTreeMap;
+
 use glam::DVec3;
 use glamx::DPose3;
 
@@ -30,6 +32,19 @@ pub enum Role {
     Obstacle,
     /// The floor.
     Floor,
+}
+
+impl Role {
+    fn in_words(self) -> &'static str {
+        match self {
+            Self::Robot => "a link of the arm",
+            Self::Device => "the device",
+            Self::Tool => "the tool",
+            Self::Part => "the part",
+            Self::Obstacle => "an obstacle",
+            Self::Floor => "the floor",
+        }
+    }
 }
 
 /// Description of a model.
@@ -68,6 +83,18 @@ pub enum ModelError {
         second: String,
         /// Depth [m].
         depth: f64,
+    },
+    /// Two bodies of one name, of which nothing else could tell which is meant.
+    #[error(
+        "`{name}` is the name of {first} and of {second}, expected different names: give an obstacle another (`name` in [[obstacle]]), a link in the URDF file"
+    )]
+    SameName {
+        /// The name.
+        name: String,
+        /// What the one is.
+        first: &'static str,
+        /// What the other is.
+        second: &'static str,
     },
     /// A pair that may meet names a body that is not there.
     #[error("collision.allowed_pairs names {name}, expected bodies of the cell: {known}")]
@@ -175,6 +202,18 @@ impl CollisionModel {
     }
 
     fn check_names(&self, allowed: &[[String; 2]]) -> Result<(), ModelError> {
+        // The floor is drawn nowhere, and obstacles may be one.
+        let named = self.bodies.iter().filter(|(role, _)| *role != Role::Floor);
+        let mut known = BTreeMap::new();
+        for (role, body) in named {
+            if let Some(first) = known.insert(&body.name, *role) {
+                return Err(ModelError::SameName {
+                    name: body.name.clone(),
+                    first: first.in_words(),
+                    second: role.in_words(),
+                });
+            }
+        }
         let is_body = |name: &&String| self.bodies.iter().any(|(_, body)| body.name == **name);
         match allowed.iter().flatten().find(|name| !is_body(name)) {
             None => Ok(()),

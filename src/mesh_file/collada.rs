@@ -7,34 +7,37 @@ mod walk;
 
 use glam::DMat4;
 
-use self::tree::{Tree, checked_depth, is};
+use self::tree::{Tree, is};
 use self::walk::Walk;
-use super::scene::{Fault, MeshFile, Up};
-use super::text::{decoded, number};
+use super::scene::{Assembly, Fault, MeshFile, Up};
+use super::text::{decoded, number, shown};
+use crate::xml;
 
 pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, Fault> {
     let text = decoded(bytes);
-    checked_depth(&text)?;
+    let text = text.trim_start();
+    xml::check(text).map_err(|excess| Fault::at_line(excess.line as usize, excess))?;
     let options = roxmltree::ParsingOptions {
         allow_dtd: true,
         ..roxmltree::ParsingOptions::default()
     };
-    let document = roxmltree::Document::parse_with_options(text.trim_start(), options)
+    let document = roxmltree::Document::parse_with_options(text, options)
         .map_err(|error| Fault::malformed(format!("its XML: {error}")))?;
     let tree = Tree::new(&document)?;
     let asset = asset(&tree)?;
-    let mut file = MeshFile {
+    let mut assembly = Assembly::new(MeshFile {
         in_metres: true,
         up: asset.up,
         notes: asset.note.into_iter().collect(),
         ..MeshFile::unitless(Vec::new())
-    };
+    });
     let unit = DMat4::from_scale(glam::DVec3::splat(asset.metre));
     let mut walk = Walk::new(&tree);
     match scene(&tree)? {
-        Some(scene) => walk.children(scene, unit, &mut file)?,
-        None => walk.all_geometries(unit, &mut file)?,
+        Some(scene) => walk.children(scene, unit, &mut assembly)?,
+        None => walk.all_geometries(unit, &mut assembly)?,
     }
+    let mut file = assembly.file;
     if walk.bent > 0 {
         file.notes.push(format!(
             "{} of its faces are not plane: they were split where they fold the least",
@@ -65,7 +68,10 @@ fn asset(tree: &Tree) -> Result<Asset, Fault> {
                 _ => {
                     return Err(tree.fault(
                         element,
-                        format!("its unit is `{text}` metres, expected a positive number"),
+                        format!(
+                            "its unit is `{}` metres, expected a positive number",
+                            shown(text)
+                        ),
                     ));
                 }
             },
@@ -80,7 +86,10 @@ fn asset(tree: &Tree) -> Result<Asset, Fault> {
             Some(other) => {
                 return Err(tree.fault(
                     element,
-                    format!("its up_axis is `{other}`, expected X_UP, Y_UP or Z_UP"),
+                    format!(
+                        "its up_axis is `{}`, expected X_UP, Y_UP or Z_UP",
+                        shown(other)
+                    ),
                 ));
             }
         };

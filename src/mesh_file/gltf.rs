@@ -2,6 +2,7 @@
 
 mod accessor;
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use base64::Engine as _;
@@ -10,10 +11,16 @@ use glam::{DMat4, DQuat, DVec3};
 use serde::Deserialize;
 
 use self::accessor::{Accessor, BufferView, Buffers};
-use super::scene::{Fault, MeshFile, MeshPart, Up};
+use super::scene::{Assembly, Fault, MeshFile, MeshPart, Up, bounded, with_own_points};
+use super::text::shown;
 
 /// Levels of nodes in nodes; of more, or of nodes that hold themselves, there is no end.
 const DEEPEST: usize = 200;
+/// Objects and entries of lists of the JSON text; each takes up to some 300 and 30 bytes in memory.
+const MOST_OBJECTS: usize = 500_000;
+const MOST_ENTRIES: usize = 5_000_000;
+/// Bytes of all buffers: many may be of one file beside it.
+const MOST_BYTES: usize = 400_000_000;
 /// Extensions that say nothing of the shape.
 const OF_LOOKS: [&str; 4] = [
     "KHR_materials_",
@@ -111,6 +118,15 @@ pub(super) fn parse(bytes: &[u8], folder: &Path) -> Result<MeshFile, Fault> {
     } else {
         (bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), None)
     };
+    let count = |letter: u8| json.iter().filter(|byte| **byte == letter).count();
+    if count(b'{') > MOST_OBJECTS || count(b',') > MOST_ENTRIES {
+        return Err(Fault::unsupported(
+            format!(
+                "a JSON text of more than {MOST_OBJECTS} objects or {MOST_ENTRIES} entries of lists"
+            ),
+            "export a simpler scene",
+        ));
+    }
     // Files of version 1 have other forms: what they say of it is asked first.
     let head: Head = serde_json::from_slice(json)
         .map_err(|error| Fault::malformed(format!("its JSON: {error}")))?;
@@ -142,31 +158,34 @@ pub(super) fn parse(bytes: &[u8], folder: &Path) -> Result<MeshFile, Fault> {
             }
         }
     }
-    let loaded = root
-        .buffers
-        .iter()
-        .enumerate()
-        .map(|(index, buffer)| load(buffer, index, chunk, folder));
-    let data = loaded.collect::<Result<Vec<_>, Fault>>()?;
-    let buffers = Buffers {
-        data: &data,
-        views: &root.buffer_views,
-        accessors: &root.accessors,
-    };
-    let mut file = MeshFile {
+    let data = all_buffers(&root, chunk, folder)?;
+    let mut buffers = Buffers::new(&data, &root.buffer_views, &root.accessors);
+    let mut assembly = Assembly::new(MeshFile {
         in_metres: true,
         up: Up::Y,
         ..MeshFile::unitless(Vec::new())
-    };
-    let meshes = root.meshes.iter().map(|mesh| parts(mesh, &root, &buffers));
+    });
+    let (mut meshes, mut triangles, mut points) = (Vec::new(), 0, 0);
+    for mesh in &root.meshes {
+        let mut parts = Vec::new();
+        for primitive in &mesh.primitives {
+            assembly.pass(1)?;
+            let part = part(primitive, &root, &mut buffers)?;
+            triangles += part.triangles.len();
+            points += part.points.len();
+            bounded(triangles, points)?;
+            parts.push(part);
+        }
+        meshes.push(parts);
+    }
     let walk = Walk {
         root: &root,
-        meshes: meshes.collect::<Result<Vec<_>, Fault>>()?,
+        meshes,
     };
     for node in tops(&root)? {
-        walk.node(node, DMat4::IDENTITY, 0, &mut file)?;
+        walk.node(node, DMat4::IDENTITY, 0, &mut assembly)?;
     }
-    Ok(file)
+    Ok(assembly.file)
 }
 
 /// The JSON and the binary chunk of a .glb.
@@ -200,6 +219,22 @@ fn chunks(bytes: &[u8]) -> Result<(&[u8], Option<&[u8]>), Fault> {
     Ok((json, binary))
 }
 
+fn all_buffers(root: &Root, chunk: Option<&[u8]>, folder: &Path) -> Result<Vec<Vec<u8>>, Fault> {
+    let (mut data, mut size) = (Vec::new(), 0);
+    for (index, buffer) in root.buffers.iter().enumerate() {
+        let own = load(buffer, index, chunk, folder)?;
+        size += own.len();
+        if size > MOST_BYTES {
+            return Err(Fault::unsupported(
+                format!("buffers of more than {} MB", MOST_BYTES / 1_000_000),
+                "export a simpler scene",
+            ));
+        }
+        data.push(own);
+    }
+    Ok(data)
+}
+
 /// A buffer's bytes: of the file's own chunk, of a data URI or of a file beside it.
 fn load(
     buffer: &Buffer,
@@ -231,7 +266,7 @@ fn load(
     let name = decoded(uri);
     if name.contains("://") {
         return Err(Fault::unsupported(
-            format!("a buffer at {name}"),
+            format!("a buffer at {}", shown(&name)),
             "put it beside the file, or export a .glb",
         ));
     }
@@ -261,59 +296,54 @@ fn tops(root: &Root) -> Result<Vec<usize>, Fault> {
     match root.scenes.get(which) {
         Some(scene) => Ok(scene.nodes.clone()),
         None if root.scenes.is_empty() => {
-            let inner = |node: &usize| root.nodes.iter().any(|other| other.children.contains(node));
-            Ok((0..root.nodes.len()).filter(|node| !inner(node)).collect())
+            let inner: BTreeSet<usize> = (root.nodes.iter())
+                .flat_map(|node| node.children.iter().copied())
+                .collect();
+            Ok((0..root.nodes.len())
+                .filter(|node| !inner.contains(node))
+                .collect())
         }
         None => Err(Fault::malformed(format!("there is no scene {which}"))),
     }
 }
 
-/// Triangles of a mesh.
-fn parts(mesh: &Mesh, root: &Root, buffers: &Buffers) -> Result<Vec<MeshPart>, Fault> {
-    let mut found = Vec::new();
-    for primitive in &mesh.primitives {
-        let mode = primitive.mode.unwrap_or(4);
-        let Some(position) = primitive
-            .attributes
-            .position
-            .filter(|_| (4..=6).contains(&mode))
-        else {
-            // Points and lines have no surface.
-            continue;
-        };
-        let points = buffers.points(position)?;
-        let indices = match primitive.indices {
-            Some(indices) => buffers.indices(indices)?,
-            None => (0..points.len() as u32).collect(),
-        };
-        if let Some(index) = indices
-            .iter()
-            .find(|index| **index as usize >= points.len())
-        {
-            return Err(Fault::malformed(format!(
-                "a triangle refers to the missing vertex {index} (there are {})",
-                points.len()
-            )));
-        }
-        let triangles = match mode {
-            4 => indices
-                .chunks_exact(3)
-                .map(|three| [three[0], three[1], three[2]])
-                .collect(),
-            5 => super::polygon::strip(&indices),
-            _ => super::polygon::fan(&indices),
-        };
-        let material = primitive
-            .material
-            .and_then(|index| root.materials.get(index));
-        let roughness = material.and_then(|material| material.pbr_metallic_roughness.as_ref());
-        found.push(MeshPart {
-            points,
-            triangles,
-            colour: roughness.and_then(|roughness| roughness.base_color_factor),
-        });
+/// Triangles of a primitive; none of points and lines, which have no surface.
+fn part(primitive: &Primitive, root: &Root, buffers: &mut Buffers) -> Result<MeshPart, Fault> {
+    let mode = primitive.mode.unwrap_or(4);
+    let position = primitive.attributes.position;
+    let Some(position) = position.filter(|_| (4..=6).contains(&mode)) else {
+        return Ok(MeshPart::default());
+    };
+    let points = buffers.points(position)?;
+    let indices = match primitive.indices {
+        Some(indices) => buffers.indices(indices)?,
+        None => (0..points.len() as u32).collect(),
+    };
+    if let Some(index) = indices
+        .iter()
+        .find(|index| **index as usize >= points.len())
+    {
+        return Err(Fault::malformed(format!(
+            "a triangle refers to the missing vertex {index} (there are {})",
+            points.len()
+        )));
     }
-    Ok(found)
+    let triangles: Vec<[u32; 3]> = match mode {
+        4 => indices
+            .chunks_exact(3)
+            .map(|three| [three[0], three[1], three[2]])
+            .collect(),
+        5 => super::polygon::strip(&indices),
+        _ => super::polygon::fan(&indices),
+    };
+    let material = primitive
+        .material
+        .and_then(|index| root.materials.get(index));
+    let roughness = material.and_then(|material| material.pbr_metallic_roughness.as_ref());
+    Ok(MeshPart {
+        colour: roughness.and_then(|roughness| roughness.base_color_factor),
+        ..with_own_points(&points, &triangles)
+    })
 }
 
 struct Walk<'a> {
@@ -327,8 +357,9 @@ impl Walk<'_> {
         index: usize,
         parent: DMat4,
         depth: usize,
-        file: &mut MeshFile,
+        assembly: &mut Assembly,
     ) -> Result<(), Fault> {
+        assembly.pass(1)?;
         if depth > DEEPEST {
             return Err(Fault::malformed(format!(
                 "node {index} lies more than {DEEPEST} nodes deep, or in itself"
@@ -352,11 +383,11 @@ impl Walk<'_> {
                 .get(mesh)
                 .ok_or_else(|| Fault::malformed(format!("there is no mesh {mesh}")))?;
             for part in parts {
-                file.place(part, place)?;
+                assembly.place(part, place)?;
             }
         }
         for child in &node.children {
-            self.node(*child, place, depth + 1, file)?;
+            self.node(*child, place, depth + 1, assembly)?;
         }
         Ok(())
     }

@@ -27,4 +27,6 @@ pub use read::read;
 pub use scene::{MeshFile, MeshPart, Up};
 
 #[cfg(test)]
+mod hostile_tests;
+#[cfg(test)]
 mod tests;

@@ -1,13 +1,13 @@
 //! Wavefront OBJ: vertices and faces; of materials the colour.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use glam::DVec3;
 
-use super::polygon::split;
-use super::scene::{Fault, MeshFile, MeshPart};
-use super::text::{decoded, lines, number};
+use super::polygon::{Effort, split};
+use super::scene::{Fault, MeshFile, MeshPart, bounded};
+use super::text::{decoded, lines, number, shown};
 
 pub(super) fn parse(bytes: &[u8], folder: &Path) -> Result<MeshFile, Fault> {
     let text = decoded(bytes);
@@ -18,7 +18,9 @@ pub(super) fn parse(bytes: &[u8], folder: &Path) -> Result<MeshFile, Fault> {
         // A backslash at its end goes on with the next.
         while let Some(begun) = line.strip_suffix('\\') {
             let next = lines.next().map_or("", |(_, next)| next.trim_end());
-            line = format!("{begun} {next}");
+            line.truncate(begun.len());
+            line.push(' ');
+            line.push_str(next);
         }
         let statement = line.split('#').next().unwrap_or_default();
         reader.statement(index + 1, statement, folder)?;
@@ -26,20 +28,28 @@ pub(super) fn parse(bytes: &[u8], folder: &Path) -> Result<MeshFile, Fault> {
     reader.finish()
 }
 
+/// Libraries of materials that are read, at most.
+const MOST_LIBRARIES: usize = 100;
+
 /// A face with the line that it stands in.
 struct Face {
-    line: usize,
-    corners: Vec<i64>,
-    /// Vertices known when it was read: negative indices count back from there.
-    known: usize,
-    material: String,
+    line: u32,
+    /// Where its corners end in the list of all.
+    end: u32,
+    material: u32,
 }
 
 #[derive(Default)]
 struct Reader {
     points: Vec<DVec3>,
     faces: Vec<Face>,
-    material: String,
+    /// Corners of the faces, one after the other: a vertex may follow on its face.
+    corners: Vec<u32>,
+    /// Names of materials by their numbers, and their numbers.
+    materials: Vec<String>,
+    numbers: BTreeMap<String, u32>,
+    material: u32,
+    libraries: BTreeSet<String>,
     colours: BTreeMap<String, [f64; 4]>,
     free_form: Option<usize>,
 }
@@ -52,7 +62,10 @@ impl Reader {
             "v" => {
                 let numbers: Result<Vec<f64>, String> = words.take(3).map(number).collect();
                 match numbers.map_err(|reason| Fault::at_line(line, reason))?[..] {
-                    [x, y, z] => self.points.push(DVec3::new(x, y, z)),
+                    [x, y, z] => {
+                        self.points.push(DVec3::new(x, y, z));
+                        bounded(0, self.points.len())?;
+                    }
                     _ => {
                         return Err(Fault::at_line(
                             line,
@@ -62,35 +75,17 @@ impl Reader {
                 }
             }
             "f" | "fo" => {
-                let corner = |word: &str| {
-                    let index = word.split('/').next().unwrap_or_default();
-                    let parsed = index.parse::<i64>().ok().filter(|index| *index != 0);
-                    parsed.ok_or_else(|| Fault::at_line(line, format!("`{word}` is no corner of a face, expected the number of a vertex, from 1")))
-                };
-                let corners = words.map(corner).collect::<Result<Vec<i64>, Fault>>()?;
-                if corners.len() < 3 {
-                    return Err(Fault::at_line(
-                        line,
-                        format!("a face of {} corners, expected 3 or more", corners.len()),
-                    ));
-                }
-                self.faces.push(Face {
-                    line,
-                    corners,
-                    known: self.points.len(),
-                    material: self.material.clone(),
-                });
+                self.face(line, words)?;
             }
-            "usemtl" => statement.trim_start()[6..]
-                .trim()
-                .clone_into(&mut self.material),
+            "usemtl" => {
+                let name = statement.trim_start()[6..].trim();
+                self.material = self.number_of(name);
+            }
             "mtllib" => {
                 let names = statement.trim_start()[6..].trim();
                 let whole = std::iter::once(names);
                 for name in whole.chain(words) {
-                    if let Ok(bytes) = crate::file::read(folder.join(name.replace('\\', "/"))) {
-                        self.colours.extend(colours(&decoded(&bytes)));
-                    }
+                    self.library(name, folder);
                 }
             }
             "curv" | "curv2" | "surf" => {
@@ -107,6 +102,75 @@ impl Reader {
         Ok(())
     }
 
+    fn face<'a>(&mut self, line: usize, words: impl Iterator<Item = &'a str>) -> Result<(), Fault> {
+        let begin = self.corners.len();
+        for word in words {
+            let index = word.split('/').next().unwrap_or_default();
+            let parsed = index.parse::<i64>().ok().filter(|index| *index != 0);
+            let Some(given) = parsed else {
+                let word = shown(word);
+                return Err(Fault::at_line(
+                    line,
+                    format!(
+                        "`{word}` is no corner of a face, expected the number of a vertex, from 1"
+                    ),
+                ));
+            };
+            // Negative ones count back from the vertices known by now.
+            let index = match given > 0 {
+                true => given - 1,
+                false => self.points.len() as i64 + given,
+            };
+            self.corners.push(u32::try_from(index).map_err(|_| {
+                let count = self.points.len();
+                Fault::at_line(
+                    line,
+                    format!("a face refers to the missing vertex {given} (there are {count})"),
+                )
+            })?);
+            bounded(self.corners.len() / 3, self.points.len())?;
+        }
+        let count = self.corners.len() - begin;
+        if count < 3 {
+            return Err(Fault::at_line(
+                line,
+                format!("a face of {count} corners, expected 3 or more"),
+            ));
+        }
+        self.faces.push(Face {
+            line: line as u32,
+            end: self.corners.len() as u32,
+            material: self.material,
+        });
+        bounded(self.faces.len(), self.points.len())
+    }
+
+    /// A material's number, from 1; faces before one is named have 0.
+    fn number_of(&mut self, name: &str) -> u32 {
+        if let Some(known) = self.numbers.get(name) {
+            return *known;
+        }
+        self.materials.push(name.to_owned());
+        let number = self.materials.len() as u32;
+        self.numbers.insert(name.to_owned(), number);
+        number
+    }
+
+    fn material_of(&self, face: &Face) -> &str {
+        let own = self.materials.get((face.material as usize).wrapping_sub(1));
+        own.map_or("", String::as_str)
+    }
+
+    /// Colours of a library beside the file, which is read once however often it is named.
+    fn library(&mut self, name: &str, folder: &Path) {
+        if self.libraries.len() >= MOST_LIBRARIES || !self.libraries.insert(name.to_owned()) {
+            return;
+        }
+        if let Ok(bytes) = crate::file::read(folder.join(name.replace('\\', "/"))) {
+            self.colours.extend(colours(&decoded(&bytes)));
+        }
+    }
+
     fn finish(self) -> Result<MeshFile, Fault> {
         if let Some(line) = self.free_form {
             return Err(Fault::unsupported(
@@ -115,34 +179,25 @@ impl Reader {
             ));
         }
         let count = self.points.len();
+        bounded(0, count)?;
+        let (effort, mut begin, mut triangles) = (Effort::new(), 0, 0);
         let mut parts: BTreeMap<&str, MeshPart> = BTreeMap::new();
         let (mut bent, mut doubtful) = (Vec::new(), None);
         for face in &self.faces {
-            let index = |&corner: &i64| {
-                let index = if corner > 0 {
-                    corner - 1
-                } else {
-                    face.known as i64 + corner
-                };
-                let index = usize::try_from(index).ok().filter(|index| *index < count);
-                index.map(|index| index as u32).ok_or_else(|| {
-                    Fault::at_line(
-                        face.line,
-                        format!("a face refers to the missing vertex {corner} (there are {count})"),
-                    )
-                })
-            };
-            let corners = face
-                .corners
-                .iter()
-                .map(index)
-                .collect::<Result<Vec<u32>, Fault>>()?;
-            let Some(split) = split(&self.points, &corners, &[]) else {
+            let line = face.line as usize;
+            let corners = &self.corners[begin..face.end as usize];
+            begin = face.end as usize;
+            if let Some(corner) = corners.iter().find(|corner| **corner as usize >= count) {
+                let corner = u64::from(*corner) + 1;
                 return Err(Fault::at_line(
-                    face.line,
-                    "the sides of a face cross each other, expected a plane face, or triangles",
+                    line,
+                    format!("a face refers to the missing vertex {corner} (there are {count})"),
                 ));
-            };
+            }
+            let split = split(&self.points, corners, &[], &effort)
+                .map_err(|reason| Fault::at_line(line, reason))?;
+            triangles += split.triangles.len();
+            bounded(triangles, count)?;
             bent.extend(split.off_plane.map(|off| (face.line, off)));
             if split.folded && doubtful.is_none() {
                 doubtful = Some(format!(
@@ -151,7 +206,7 @@ impl Reader {
                     split.off_plane.unwrap_or_default()
                 ));
             }
-            let part = parts.entry(&face.material).or_default();
+            let part = parts.entry(self.material_of(face)).or_default();
             part.triangles.extend(split.triangles);
         }
         let mut notes = Vec::new();

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::polygon::split;
-use super::scene::{Fault, MeshFile, MeshPart};
-use super::text::number;
+use super::polygon::{Effort, split};
+use super::scene::{Fault, MeshFile, MeshPart, bounded};
+use super::text::{number, shown};
 
 /// How values are written.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -75,8 +75,12 @@ pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, Fault> {
         at: body,
     };
     let mut part = MeshPart::default();
-    let mut polygons: Vec<Vec<f64>> = Vec::new();
+    let mut polygons = Polygons::default();
     for element in &elements {
+        if element.properties.is_empty() {
+            // Whatever count of them is claimed, nothing is there to be read.
+            continue;
+        }
         if element.name == "tristrips" && element.count > 0 {
             return Err(Fault::unsupported(
                 "the PLY element `tristrips`",
@@ -114,35 +118,58 @@ pub(super) fn parse(bytes: &[u8]) -> Result<MeshFile, Fault> {
                 let [x, y, z] = axes.map(|axis| row[axis][0]);
                 part.points.push(DVec3::new(x, y, z));
             } else if let Some(Some(corners)) = corners {
-                polygons.push(row[corners].clone());
+                polygons.add(number, &row[corners])?;
             }
+            bounded(
+                polygons.ends.len().max(polygons.corners.len() / 3),
+                part.points.len(),
+            )?;
         }
     }
     with_faces(part, &polygons)
 }
 
+/// Faces by their corners, one after the other; those of less than three have no surface.
+#[derive(Default)]
+struct Polygons {
+    corners: Vec<u32>,
+    /// Numbers of the faces, and where their corners end.
+    ends: Vec<(u32, u32)>,
+}
+
+impl Polygons {
+    fn add(&mut self, face: usize, values: &[f64]) -> Result<(), Fault> {
+        if values.len() < 3 {
+            return Ok(());
+        }
+        for value in values {
+            if value.fract() != 0.0 || !(0.0..f64::from(u32::MAX)).contains(value) {
+                return Err(Fault::malformed(format!(
+                    "face {face} refers to a vertex {value}, expected a whole number from 0"
+                )));
+            }
+            self.corners.push(*value as u32);
+        }
+        self.ends.push((face as u32, self.corners.len() as u32));
+        Ok(())
+    }
+}
+
 /// The file of a part's points and its polygons.
-fn with_faces(mut part: MeshPart, polygons: &[Vec<f64>]) -> Result<MeshFile, Fault> {
+fn with_faces(mut part: MeshPart, polygons: &Polygons) -> Result<MeshFile, Fault> {
     let count = part.points.len();
     let (mut bent, mut doubtful) = (0, None);
-    for (face, polygon) in polygons.iter().enumerate() {
-        let index = |&value: &f64| {
-            let valid = value >= 0.0 && value.fract() == 0.0 && value < count as f64;
-            valid.then_some(value as u32).ok_or_else(|| {
-                Fault::malformed(format!(
-                    "face {face} refers to the missing vertex {value} (there are {count})"
-                ))
-            })
-        };
-        let corners = polygon
-            .iter()
-            .map(index)
-            .collect::<Result<Vec<u32>, Fault>>()?;
-        let Some(split) = split(&part.points, &corners, &[]) else {
+    let (effort, mut begin) = (Effort::new(), 0);
+    for &(face, end) in &polygons.ends {
+        let corners = &polygons.corners[begin..end as usize];
+        begin = end as usize;
+        if let Some(missing) = corners.iter().find(|corner| **corner as usize >= count) {
             return Err(Fault::malformed(format!(
-                "the sides of face {face} cross each other, expected a plane face, or triangles"
+                "face {face} refers to the missing vertex {missing} (there are {count})"
             )));
-        };
+        }
+        let split = split(&part.points, corners, &[], &effort)
+            .map_err(|reason| Fault::malformed(format!("face {face}: {reason}")))?;
         bent += usize::from(split.off_plane.is_some());
         if split.folded {
             doubtful.get_or_insert(format!(
@@ -150,6 +177,7 @@ fn with_faces(mut part: MeshPart, polygons: &[Vec<f64>]) -> Result<MeshFile, Fau
             ));
         }
         part.triangles.extend(split.triangles);
+        bounded(part.triangles.len(), count)?;
     }
     let mut notes = Vec::new();
     if bent > 0 {
@@ -180,7 +208,12 @@ fn header(bytes: &[u8]) -> Result<(Format, Vec<Element>, usize), Fault> {
         let two = rest[end..].starts_with(b"\r\n");
         at += end + 1 + usize::from(two);
         let line = String::from_utf8_lossy(&rest[..end]).into_owned();
-        let fault = || Fault::at_line(number, format!("`{line}` is no line of a PLY header"));
+        let fault = || {
+            Fault::at_line(
+                number,
+                format!("`{}` is no line of a PLY header", shown(&line)),
+            )
+        };
         let words: Vec<&str> = line
             .trim_start_matches('\u{feff}')
             .split_whitespace()
@@ -257,6 +290,7 @@ impl Values<'_> {
             let mut values = Vec::new();
             for _ in 0..count.max(0.0) as u64 {
                 values.push(self.next(property.value)?.ok_or_else(cut)?);
+                bounded(values.len() / 3, 0)?;
             }
             found.push(values);
         }

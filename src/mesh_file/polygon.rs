@@ -1,5 +1,7 @@
 //! Polygons split into triangles: concave ones by ears, with all of their corners kept, so that no neighbour is left with a crack.
 
+use std::cell::Cell;
+
 use glam::{DVec2, DVec3};
 
 /// Twice the area below which an ear has none: share of the polygon's extent squared [1].
@@ -8,6 +10,37 @@ const NO_AREA: f64 = 1e-14;
 const BENT: f64 = 1e-4;
 /// Fold between a polygon's own triangles from which the file does not say which shape it means [rad].
 const FOLDED: f64 = 25.0 * std::f64::consts::PI / 180.0;
+
+/// Looks at corners that splitting the polygons of a file may take: a second or two. Of one polygon they grow as the square of its corners and more.
+const MOST_LOOKS: u64 = 300_000_000;
+
+/// What is left of the looks at corners.
+pub(super) struct Effort(Cell<u64>);
+
+impl Effort {
+    pub(super) fn new() -> Self {
+        Self(Cell::new(MOST_LOOKS))
+    }
+
+    fn spend(&self, looks: usize) -> Result<(), Unsplit> {
+        let left = self.0.get().checked_sub(looks as u64);
+        self.0.set(left.unwrap_or(0));
+        left.map(|_| ()).ok_or(Unsplit::TooLong)
+    }
+}
+
+/// Why a polygon is not split.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+pub(super) enum Unsplit {
+    /// Its sides do.
+    #[error("the sides of a face cross each other, expected a plane face, or triangles")]
+    Crossed,
+    /// It has, and those before it had, too many corners.
+    #[error(
+        "its faces have so many corners that splitting them into triangles is refused, expected fewer corners a face: export the part with triangles"
+    )]
+    TooLong,
+}
 
 /// A polygon's triangles, as indices of points.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,11 +56,16 @@ pub struct Split {
 /// Splits a polygon with corners `outline` of `points`, concave or not; none where its sides cross each other.
 #[must_use]
 pub fn split_polygon(points: &[DVec3], outline: &[u32]) -> Option<Split> {
-    split(points, outline, &[])
+    split(points, outline, &[], &Effort::new()).ok()
 }
 
-/// Splits a polygon with corners `outline` of `points` and the holes in it; none where its sides cross each other.
-pub(super) fn split(points: &[DVec3], outline: &[u32], holes: &[Vec<u32>]) -> Option<Split> {
+/// Splits a polygon with corners `outline` of `points` and the holes in it.
+pub(super) fn split(
+    points: &[DVec3],
+    outline: &[u32],
+    holes: &[Vec<u32>],
+    effort: &Effort,
+) -> Result<Split, Unsplit> {
     let mut corners = outline.to_vec();
     corners.dedup();
     while corners.len() > 1 && corners.first() == corners.last() {
@@ -39,10 +77,10 @@ pub(super) fn split(points: &[DVec3], outline: &[u32], holes: &[Vec<u32>]) -> Op
         folded: false,
     };
     if corners.len() < 3 {
-        return Some(flat(Vec::new()));
+        return Ok(flat(Vec::new()));
     }
     if corners.len() == 3 && holes.is_empty() {
-        return Some(flat(vec![[corners[0], corners[1], corners[2]]]));
+        return Ok(flat(vec![[corners[0], corners[1], corners[2]]]));
     }
     let at = |corner: u32| points[corner as usize];
     let start = at(corners[0]);
@@ -59,17 +97,18 @@ pub(super) fn split(points: &[DVec3], outline: &[u32], holes: &[Vec<u32>]) -> Op
             .any(|(c, other)| aside(c, other) > 1e-6 * extent * extent)
         {
             // As much of it is wound one way as the other.
-            return None;
+            return Err(Unsplit::Crossed);
         }
         // Without area: any triangles do, and all of its corners are in them.
         let fan = (1..corners.len() - 1).map(|i| [corners[0], corners[i], corners[i + 1]]);
-        return Some(flat(fan.collect()));
+        return Ok(flat(fan.collect()));
     };
     let across = normal.any_orthonormal_vector();
     let plane = Plane {
         points,
         axes: [across, normal.cross(across)],
         no_area: NO_AREA * extent * extent,
+        effort,
     };
     let joined = plane.with_bridges(corners.clone(), holes)?;
     let off = corners.iter().map(|&c| (at(c) - start).dot(normal));
@@ -86,8 +125,11 @@ pub(super) fn split(points: &[DVec3], outline: &[u32], holes: &[Vec<u32>]) -> Op
         Some(triangles) => triangles,
         None => plane.ears(joined)?,
     };
+    if bent {
+        effort.spend(triangles.len() * triangles.len() / 2)?;
+    }
     let folded = bent && fold(points, &triangles) > FOLDED;
-    Some(Split {
+    Ok(Split {
         triangles,
         off_plane: bent.then_some(high - low),
         folded,
@@ -153,6 +195,7 @@ struct Plane<'a> {
     points: &'a [DVec3],
     axes: [DVec3; 2],
     no_area: f64,
+    effort: &'a Effort,
 }
 
 impl Plane<'_> {
@@ -190,10 +233,11 @@ impl Plane<'_> {
     }
 
     /// Clips ears, the one with the widest smallest angle among those at hand first.
-    fn ears(&self, mut corners: Vec<u32>) -> Option<Vec<[u32; 3]>> {
+    fn ears(&self, mut corners: Vec<u32>) -> Result<Vec<[u32; 3]>, Unsplit> {
         let mut triangles = Vec::new();
         while corners.len() > 3 {
             let count = corners.len();
+            self.effort.spend(2 * count)?;
             let reflex: Vec<u32> = (0..count)
                 .filter(|&i| self.area(ear(&corners, i)) <= self.no_area)
                 .map(|i| corners[i])
@@ -201,7 +245,11 @@ impl Plane<'_> {
             let mut best = None;
             for index in 0..count {
                 let ear = ear(&corners, index);
-                if self.area(ear) <= self.no_area || !self.is_free(ear, &reflex) {
+                if self.area(ear) <= self.no_area {
+                    continue;
+                }
+                self.effort.spend(reflex.len())?;
+                if !self.is_free(ear, &reflex) {
                     continue;
                 }
                 let width = self.narrowest(ear);
@@ -219,17 +267,20 @@ impl Plane<'_> {
                     .map(|i| self.area([corners[0], corners[i], corners[i + 1]]))
                     .sum();
                 if rest.abs() > self.no_area * count as f64 {
-                    return None;
+                    return Err(Unsplit::Crossed);
                 }
                 triangles.extend((1..count - 1).map(|i| [corners[0], corners[i], corners[i + 1]]));
-                return Some(triangles);
+                return Ok(triangles);
             };
             triangles.push(ear(&corners, index));
             corners.remove(index);
         }
         let last = [corners[0], corners[1], corners[2]];
         triangles.push(last);
-        (self.area(last) >= -self.no_area).then_some(triangles)
+        match self.area(last) >= -self.no_area {
+            true => Ok(triangles),
+            false => Err(Unsplit::Crossed),
+        }
     }
 
     /// Whether no other corner lies in an ear or on its sides.
@@ -264,7 +315,7 @@ impl Plane<'_> {
     }
 
     /// The outline with its holes joined to it, each by a way there and back to a corner that sees it.
-    fn with_bridges(&self, mut outline: Vec<u32>, holes: &[Vec<u32>]) -> Option<Vec<u32>> {
+    fn with_bridges(&self, mut outline: Vec<u32>, holes: &[Vec<u32>]) -> Result<Vec<u32>, Unsplit> {
         let mut holes: Vec<Vec<u32>> = holes.to_vec();
         let rightmost = |hole: &Vec<u32>| {
             let places = hole.iter().map(|&corner| self.seen(corner).x);
@@ -273,6 +324,8 @@ impl Plane<'_> {
         holes.retain(|hole| hole.len() > 2);
         holes.sort_by(|one, other| rightmost(other).total_cmp(&rightmost(one)));
         for index in 0..holes.len() {
+            let sides = outline.len() + holes[index..].iter().map(Vec::len).sum::<usize>();
+            self.effort.spend(10 * sides)?;
             let mut hole = holes[index].clone();
             let area: f64 = (1..hole.len() - 1)
                 .map(|i| self.area([hole[0], hole[i], hole[i + 1]]))
@@ -282,7 +335,8 @@ impl Plane<'_> {
                 hole.reverse();
             }
             let from = (0..hole.len())
-                .max_by(|&a, &b| self.seen(hole[a]).x.total_cmp(&self.seen(hole[b]).x))?;
+                .max_by(|&a, &b| self.seen(hole[a]).x.total_cmp(&self.seen(hole[b]).x))
+                .unwrap_or(0);
             hole.rotate_left(from);
             let mut order: Vec<usize> = (0..outline.len()).collect();
             order.sort_by(|&a, &b| {
@@ -291,16 +345,22 @@ impl Plane<'_> {
                 distance(a).total_cmp(&distance(b))
             });
             let rest = &holes[index..];
-            let to = order
-                .into_iter()
-                .find(|&to| self.sees(outline[to], hole[0], &outline, rest))?;
+            let mut seen_from = None;
+            for to in order {
+                self.effort.spend(2 * sides)?;
+                if self.sees(outline[to], hole[0], &outline, rest) {
+                    seen_from = Some(to);
+                    break;
+                }
+            }
+            let to = seen_from.ok_or(Unsplit::Crossed)?;
             let mut joined = outline[..=to].to_vec();
             joined.extend(&hole);
             joined.push(hole[0]);
             joined.extend(&outline[to..]);
             outline = joined;
         }
-        Some(outline)
+        Ok(outline)
     }
 
     /// Whether no side of an outline or a hole stands between two corners.
@@ -358,7 +418,7 @@ mod tests {
         };
         let expected =
             shoelace(&outline).abs() - holes.iter().map(|hole| shoelace(hole).abs()).sum::<f64>();
-        let split = split(&points, &outline, holes).unwrap();
+        let split = split(&points, &outline, holes, &Effort::new()).unwrap();
         let whole = normal(&points, &outline);
         let areas = split.triangles.iter().map(|&t| {
             let own = normal_of(&points, t);
@@ -428,11 +488,35 @@ mod tests {
     #[test]
     fn crossed_sides_are_refused_and_bent_faces_reported() {
         let crossed = points(&[[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 3.0]]);
-        assert_eq!(split(&crossed, &[0, 1, 2, 3], &[]), None);
+        let split = |points: &[DVec3]| split(points, &[0, 1, 2, 3], &[], &Effort::new());
+        assert_eq!(split(&crossed), Err(Unsplit::Crossed));
         let mut bent = vec![DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.2), DVec3::Y];
-        let slightly = split(&bent, &[0, 1, 2, 3], &[]).unwrap();
+        let slightly = split(&bent).unwrap();
         assert!(slightly.off_plane.is_some() && !slightly.folded);
         bent[2].z = 1.5;
-        assert!(split(&bent, &[0, 1, 2, 3], &[]).unwrap().folded);
+        assert!(split(&bent).unwrap().folded);
+    }
+
+    #[test]
+    fn polygons_of_very_many_corners_are_refused_before_they_are_looked_at_for_minutes() {
+        let star = |count: u32| {
+            let corners = (0..count).map(|i| {
+                let angle = f64::from(i) * std::f64::consts::TAU / f64::from(count);
+                let radius = if i % 2 == 0 { 3.0 } else { 2.0 };
+                [radius * angle.cos(), radius * angle.sin()]
+            });
+            points(&corners.collect::<Vec<_>>())
+        };
+        let (few, many) = (star(1000), star(60_000));
+        let outline = |points: &[DVec3]| (0..points.len() as u32).collect::<Vec<u32>>();
+        let effort = Effort::new();
+        let split_few = split(&few, &outline(&few), &[], &effort).unwrap();
+        assert_eq!(split_few.triangles.len(), 998);
+        assert_eq!(
+            split(&many, &outline(&many), &[], &effort),
+            Err(Unsplit::TooLong)
+        );
+        // Nothing is left for those that follow.
+        assert!(split(&few, &outline(&few), &[], &effort).is_err());
     }
 }

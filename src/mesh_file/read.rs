@@ -35,12 +35,14 @@ pub fn read(path: &Path) -> Result<MeshFile, MeshFileError> {
         Kind::Ply => ply::parse(&bytes),
         Kind::Gltf => gltf::parse(&bytes, folder),
     };
-    parsed.map_err(|fault| match fault {
-        Fault::Malformed(reason) => MeshFileError::Malformed { file, reason },
-        Fault::Unsupported { feature, remedy } => MeshFileError::Unsupported {
-            file,
-            feature,
-            remedy: remedy.to_owned(),
-        },
-    })
+    parsed
+        .and_then(MeshFile::checked)
+        .map_err(|fault| match fault {
+            Fault::Malformed(reason) => MeshFileError::Malformed { file, reason },
+            Fault::Unsupported { feature, remedy } => MeshFileError::Unsupported {
+                file,
+                feature,
+                remedy: remedy.to_owned(),
+            },
+        })
 }

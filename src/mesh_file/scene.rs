@@ -2,8 +2,11 @@
 
 use glam::{DMat4, DVec3};
 
-/// Most triangles of a file: a scene may name one shape many times over.
-const MOST_TRIANGLES: usize = 20_000_000;
+/// Most triangles and points of a file: a scene may name one shape many times over.
+const MOST_TRIANGLES: usize = 10_000_000;
+const MOST_POINTS: usize = 15_000_000;
+/// Most elements that a walk through a scene comes by: nodes may name nodes twice at each level.
+const MOST_ELEMENTS: usize = 5_000_000;
 
 /// Triangles of one colour.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -82,17 +85,68 @@ impl MeshFile {
         self.parts.iter().map(|part| part.triangles.len()).sum()
     }
 
+    /// Refuses a file that holds more than is read.
+    pub(super) fn checked(self) -> Result<Self, Fault> {
+        let points = self.parts.iter().map(|part| part.points.len()).sum();
+        bounded(self.triangle_count(), points)?;
+        Ok(self)
+    }
+}
+
+/// Refuses more triangles and points than are read.
+pub(super) fn bounded(triangles: usize, points: usize) -> Result<(), Fault> {
+    let (most, what) = match () {
+        () if triangles > MOST_TRIANGLES => (MOST_TRIANGLES, "triangles"),
+        () if points > MOST_POINTS => (MOST_POINTS, "points"),
+        () => return Ok(()),
+    };
+    Err(Fault::unsupported(
+        format!("a mesh of more than {most} {what}"),
+        "export a simpler one",
+    ))
+}
+
+/// A scene on its way to a file, with a count of what it names.
+pub(super) struct Assembly {
+    pub(super) file: MeshFile,
+    points: usize,
+    triangles: usize,
+    elements: usize,
+}
+
+impl Assembly {
+    pub(super) fn new(file: MeshFile) -> Self {
+        Self {
+            file,
+            points: 0,
+            triangles: 0,
+            elements: 0,
+        }
+    }
+
+    /// Counts elements that the walk comes by.
+    pub(super) fn pass(&mut self, elements: usize) -> Result<(), Fault> {
+        self.elements += elements;
+        if self.elements <= MOST_ELEMENTS {
+            return Ok(());
+        }
+        Err(Fault::unsupported(
+            format!(
+                "a scene whose nodes name one another so often that it comes to more than {MOST_ELEMENTS} of them"
+            ),
+            "export a simpler one",
+        ))
+    }
+
     /// Puts a shape where a node of the scene has it.
     pub(super) fn place(&mut self, part: &MeshPart, place: DMat4) -> Result<(), Fault> {
+        self.pass(1)?;
         if part.triangles.is_empty() {
             return Ok(());
         }
-        if self.triangle_count() + part.triangles.len() > MOST_TRIANGLES {
-            return Err(Fault::unsupported(
-                format!("a scene of more than {MOST_TRIANGLES} triangles"),
-                "export a simpler one",
-            ));
-        }
+        self.triangles += part.triangles.len();
+        self.points += part.points.len();
+        bounded(self.triangles, self.points)?;
         let mut placed = part.clone();
         for point in &mut placed.points {
             *point = place.transform_point3(*point);
@@ -103,8 +157,24 @@ impl MeshFile {
                 triangle.swap(1, 2);
             }
         }
-        self.parts.push(placed);
+        self.file.parts.push(placed);
         Ok(())
+    }
+}
+
+/// Triangles with the points that they use, in their order.
+pub(super) fn with_own_points(points: &[DVec3], triangles: &[[u32; 3]]) -> MeshPart {
+    let mut used: Vec<u32> = triangles.iter().flatten().copied().collect();
+    used.sort_unstable();
+    used.dedup();
+    let place = |corner: u32| used.partition_point(|own| *own < corner) as u32;
+    MeshPart {
+        points: used.iter().map(|own| points[*own as usize]).collect(),
+        triangles: triangles
+            .iter()
+            .map(|triangle| triangle.map(place))
+            .collect(),
+        colour: None,
     }
 }
 

@@ -2,6 +2,8 @@
 
 use std::borrow::Cow;
 
+pub(super) use crate::xml::shown;
+
 /// A file's text: UTF-8 or UTF-16 by its byte-order mark; letters that are neither stand for themselves no more, as in names only.
 pub(super) fn decoded(bytes: &[u8]) -> Cow<'_, str> {
     let sixteen = |rest: &[u8], pair: fn([u8; 2]) -> u16| {
@@ -33,6 +35,7 @@ pub(super) fn number(word: &str) -> Result<f64, String> {
     if let Ok(value) = word.replace(['d', 'D'], "e").parse::<f64>() {
         return Ok(value);
     }
+    let word = &shown(word);
     let comma = word.contains(',') && word.replace(',', ".").parse::<f64>().is_ok();
     Err(if comma {
         format!("`{word}` has a decimal comma, expected a number with a decimal point")

@@ -53,14 +53,6 @@ pub enum ArmError {
         /// Why xacro did not help.
         reason: String,
     },
-    /// The file is not URDF.
-    #[error("{file}: not a valid URDF file: {source}")]
-    Malformed {
-        /// The URDF file.
-        file: PathBuf,
-        /// Message of the parser.
-        source: urdf_rs::UrdfError,
-    },
     /// The file holds something that cannot be honoured.
     #[error("{file}{}: {refusal}", line.map_or(String::new(), |line| format!(":{line}")))]
     Refused {
@@ -192,6 +184,13 @@ pub enum Refusal {
     },
     #[error("{location} is not finite")]
     NotFinite { location: String },
+    #[error("{location} is {value:.3e} {unit}, expected at most {most:.0e}: no arm has such")]
+    Absurd {
+        location: String,
+        value: f64,
+        unit: &'static str,
+        most: f64,
+    },
     #[error("link `{link}` has a {role} {shape} of {value}; expected positive sizes")]
     ShapeSize {
         link: String,

@@ -5,11 +5,25 @@ use crate::arm::chain::JointKind;
 use std::collections::BTreeMap;
 use urdf_rs::{Joint, JointType, Link, Robot};
 
+/// Names of a list that a message shows.
+const SHOWN: usize = 20;
+
+/// Names with commas between them: of many the first.
+pub(super) fn few(names: &[&str]) -> String {
+    match names.len() {
+        count if count > SHOWN => {
+            format!("{} and {} more", names[..SHOWN].join(", "), count - SHOWN)
+        }
+        _ => names.join(", "),
+    }
+}
+
 /// Look-up of links and joints by name.
 pub(super) struct Graph<'a> {
     links: BTreeMap<&'a str, &'a Link>,
     joints: BTreeMap<&'a str, &'a Joint>,
     joint_above: BTreeMap<&'a str, &'a Joint>,
+    joints_below: BTreeMap<&'a str, Vec<&'a Joint>>,
 }
 
 impl<'a> Graph<'a> {
@@ -18,6 +32,7 @@ impl<'a> Graph<'a> {
             links: BTreeMap::new(),
             joints: BTreeMap::new(),
             joint_above: BTreeMap::new(),
+            joints_below: BTreeMap::new(),
         };
         let duplicate = |what, name: &str| Refusal::Duplicate {
             what,
@@ -40,6 +55,8 @@ impl<'a> Graph<'a> {
                     });
                 }
             }
+            let below = graph.joints_below.entry(&joint.parent.link);
+            below.or_default().push(joint);
             if let Some(first) = graph.joint_above.insert(&joint.child.link, joint) {
                 return Err(Refusal::TwoParents {
                     link: joint.child.link.clone(),
@@ -57,7 +74,7 @@ impl<'a> Graph<'a> {
             Refusal::UnknownLink {
                 role,
                 link: name.to_string(),
-                known: known.join(", "),
+                known: few(&known),
             }
         })
     }
@@ -68,12 +85,17 @@ impl<'a> Graph<'a> {
         match roots.as_slice() {
             [only] => self.link(only, "base"),
             [] => Err(Refusal::Ring {
-                links: self.links.keys().copied().collect::<Vec<_>>().join(", "),
+                links: few(&self.links.keys().copied().collect::<Vec<_>>()),
             }),
             _ => Err(Refusal::NoSingleRoot {
-                roots: format!("{} ({})", roots.len(), roots.join(", ")),
+                roots: format!("{} ({})", roots.len(), few(&roots)),
             }),
         }
+    }
+
+    /// The joints below a link, in the order of the file.
+    pub fn below(&self, link: &str) -> &[&'a Joint] {
+        self.joints_below.get(link).map_or(&[], Vec::as_slice)
     }
 
     /// All joints above a link, the root's first.

@@ -1,11 +1,15 @@
 //! Masses of the file's links, welded together to one body a moving link.
 
 use super::masses::Masses;
-use super::tree::{Placed, Tree, pose_of};
+use super::tree::{Placed, Tree, pose_of, within};
 use super::{EstimatedMass, Refusal};
 use crate::arm::chain::BodyInertia;
 use glam::{DMat3, DVec3};
 use nalgebra::Matrix3;
+
+/// Heaviest link [kg] and largest inertia [kg m2].
+const HEAVIEST: f64 = 1e6;
+const LARGEST: f64 = 1e9;
 
 /// One body for each moving joint, in the frame of the link behind it, and which of them are estimated.
 pub(super) fn merged_bodies(
@@ -100,6 +104,7 @@ fn link_body(placed: &Placed, notes: &mut Vec<String>) -> Result<BodyInertia, Re
             context: "",
         });
     }
+    within(mass, HEAVIEST, "kg", || format!("mass of link `{link}`"))?;
     let part = &inertial.inertia;
     let inertia = DMat3::from_cols(
         DVec3::new(part.ixx, part.ixy, part.ixz),
@@ -111,6 +116,13 @@ fn link_body(placed: &Placed, notes: &mut Vec<String>) -> Result<BodyInertia, Re
             location: format!("inertia of link `{link}`"),
         });
     }
+    let most = inertia
+        .to_cols_array()
+        .into_iter()
+        .fold(0.0, |most: f64, own| most.max(own.abs()));
+    within(most, LARGEST, "kg m2", || {
+        format!("inertia of link `{link}`")
+    })?;
     let moments = principal_moments(&inertia);
     if moments.x < -1e-9 * moments.z.abs() {
         return Err(refused_inertia(link, moments, "", "no negative"));

@@ -1,7 +1,7 @@
 //! One moving joint of the path: axis, limits, damping and friction.
 
 use super::graph::kind_of;
-use super::tree::{Moving, unit_axis};
+use super::tree::{Moving, unit_axis, within};
 use super::{ArmOptions, Refusal};
 use crate::arm::chain::{BodyInertia, Joint, JointKind};
 use urdf_rs::JointType;
@@ -82,8 +82,15 @@ pub(super) fn path_joint(
     })
 }
 
+/// Largest damping and friction [N m s/rad, N m, N s/m or N].
+const LARGEST: f64 = 1e6;
+
 fn not_negative(source: &urdf_rs::Joint, what: &'static str, value: f64) -> Result<f64, Refusal> {
     if value.is_finite() && value >= 0.0 {
+        let unit = "N m s/rad, N m, N s/m or N";
+        within(value, LARGEST, unit, || {
+            format!("{what} of joint `{}`", source.name)
+        })?;
         Ok(value)
     } else {
         Err(Refusal::JointDynamics {

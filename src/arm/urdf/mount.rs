@@ -6,6 +6,7 @@ use glamx::DPose3;
 use super::Refusal;
 use super::graph::{Graph, kind_of};
 use super::tree::{Tree, unit_axis};
+use std::collections::BTreeSet;
 use std::ops::RangeInclusive;
 use urdf_rs::{Joint, JointType, Link, Robot};
 
@@ -74,7 +75,7 @@ fn by_likelihood<'a>(
         let usual = USUAL.iter().position(|usual| is(usual));
         let above = graph.above(link);
         let moving = above.iter().filter(|joint| moves(joint)).count();
-        let finger = is_on_finger(robot, &above);
+        let finger = is_on_finger(graph, &above);
         let is_arm = counts.contains(&moving) && !finger;
         let body = !link.visual.is_empty() || link.inertial.mass.value > 0.0;
         // A frame far behind the last joint is rather that of a tool.
@@ -97,7 +98,7 @@ fn moves(joint: &Joint) -> bool {
 }
 
 /// Whether the last moving joint is one of several that branch off the same body, as fingers do.
-fn is_on_finger(robot: &Robot, above: &[&Joint]) -> bool {
+fn is_on_finger(graph: &Graph, above: &[&Joint]) -> bool {
     let Some(at) = above.iter().rposition(|joint| moves(joint)) else {
         return false;
     };
@@ -109,21 +110,19 @@ fn is_on_finger(robot: &Robot, above: &[&Joint]) -> bool {
     for joint in above[..at].iter().rev().take_while(|joint| !moves(joint)) {
         rigid.push(&joint.parent.link);
     }
+    let mut known: BTreeSet<&str> = rigid.iter().copied().collect();
     let mut next = 0;
     while next < rigid.len() {
         let here = rigid[next];
         next += 1;
-        for joint in robot.joints.iter().filter(|joint| !moves(joint)) {
-            if joint.parent.link == here && !rigid.contains(&joint.child.link.as_str()) {
+        for joint in graph.below(here).iter().filter(|joint| !moves(joint)) {
+            if known.insert(joint.child.link.as_str()) {
                 rigid.push(&joint.child.link);
             }
         }
     }
-    let branches = robot
-        .joints
-        .iter()
-        .filter(|joint| moves(joint) && rigid.contains(&joint.parent.link.as_str()));
-    branches.count() > 1
+    let below = rigid.iter().flat_map(|link| graph.below(link));
+    below.filter(|joint| moves(joint)).count() > 1
 }
 
 /// Roll, pitch and yaw [rad] by which the tip's frame is turned so that its z points along the last joint's axis, out of the flange; zeros where it does already.

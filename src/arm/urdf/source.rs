@@ -6,8 +6,10 @@ use roxmltree::{Document, Error};
 use urdf_rs::Robot;
 
 use super::error::ArmError;
+use super::robot::robot;
 use super::walk::{Fault, Walked, is_xacro, walk};
 use super::{xacro, xml_fault};
+use crate::xml;
 
 /// A URDF file that has been read.
 pub(super) struct Source {
@@ -56,8 +58,12 @@ impl Source {
         }
         match checked(text) {
             Ok((robot, walked)) => Ok(Self::new(path, robot, walked)),
-            Err(Broken::At(fault)) if fault.xacro => Self::expanded(path, fault.line, &fault.words),
-            Err(broken) => Err(broken.of(path)),
+            Err(fault) if fault.xacro => Self::expanded(path, fault.line, &fault.words),
+            Err(Fault { line, words, .. }) => Err(ArmError::Faulty {
+                file: path.to_path_buf(),
+                line,
+                fault: words,
+            }),
         }
     }
 
@@ -88,47 +94,27 @@ impl Source {
                 walked.lines.clear();
                 Ok(Self::new(path, robot, walked))
             }
-            Err(Broken::At(fault)) => Err(refused(format!("in what it wrote: {}", fault.words))),
-            Err(broken) => Err(broken.of(path)),
+            Err(fault) => Err(refused(format!("in what it wrote: {}", fault.words))),
         }
     }
 }
 
-/// What is wrong with a text.
-enum Broken {
-    At(Fault),
-    Parser(urdf_rs::UrdfError),
-}
-
-impl Broken {
-    fn of(self, path: &Path) -> ArmError {
-        let file = path.to_path_buf();
-        match self {
-            Self::At(Fault { line, words, .. }) => ArmError::Faulty {
-                file,
-                line,
-                fault: words,
-            },
-            Self::Parser(source) => ArmError::Malformed { file, source },
-        }
-    }
-}
-
-fn checked(text: &str) -> Result<(Robot, Walked), Broken> {
+fn checked(text: &str) -> Result<(Robot, Walked), Fault> {
+    xml::check(text).map_err(|excess| Fault {
+        line: excess.line,
+        words: excess.reason,
+        xacro: false,
+    })?;
     let text = without_default_namespace(text);
     let (text, undeclared) = declared(text)?;
-    let document = Document::parse(&text).map_err(|error| at(&text, &error))?;
-    let mut walked = walk(&document).map_err(Broken::At)?;
+    let document = Document::parse(&text).map_err(|error| xml_fault::in_words(&text, &error))?;
+    let mut walked = walk(&document)?;
     for prefix in undeclared {
         let note = format!("the prefix `{prefix}:` is used without being declared");
         walked.notes.push(note);
     }
-    let robot = urdf_rs::read_from_string(&walked.edited(&text)).map_err(Broken::Parser)?;
+    let robot = robot(document.root_element(), &walked.left_out);
     Ok((robot, walked))
-}
-
-fn at(text: &str, error: &Error) -> Broken {
-    Broken::At(xml_fault::in_words(text, error))
 }
 
 /// Range of the tag that opens the robot, behind its name.
@@ -154,7 +140,7 @@ fn without_default_namespace(text: &str) -> String {
 }
 
 /// The text with its prefixes declared, and those that were not.
-fn declared(mut text: String) -> Result<(String, Vec<String>), Broken> {
+fn declared(mut text: String) -> Result<(String, Vec<String>), Fault> {
     const MOST: usize = 20;
     let mut undeclared = Vec::new();
     while undeclared.len() < MOST {
@@ -162,7 +148,7 @@ fn declared(mut text: String) -> Result<(String, Vec<String>), Broken> {
             Err(Error::UnknownNamespace(prefix, position)) => {
                 let Some(tag) = root_tag(&text) else {
                     let error = Error::UnknownNamespace(prefix, position);
-                    return Err(at(&text, &error));
+                    return Err(xml_fault::in_words(&text, &error));
                 };
                 // Of xacro the walk says what it is.
                 let known = is_xacro(&prefix);

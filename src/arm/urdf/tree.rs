@@ -1,7 +1,7 @@
 //! Which link hangs where: the path of moving joints, and what is welded to each moving link.
 
 use super::Refusal;
-use super::graph::{Graph, kind_of};
+use super::graph::{Graph, few, kind_of};
 use crate::arm::chain::BodyInertia;
 use crate::arm::chain::{Joint as ChainJoint, JointKind};
 use glam::DVec3;
@@ -84,7 +84,7 @@ impl<'a> Tree<'a> {
                 expected: [*counts.start(), *counts.end()],
                 names: match names.len() {
                     0 => String::new(),
-                    _ => format!(" ({})", names.join(", ")),
+                    _ => format!(" ({})", few(&names)),
                 },
                 hint,
             });
@@ -98,7 +98,7 @@ impl<'a> Tree<'a> {
             notes.push(format!(
                 "links not carried by base link {} are left out: {}",
                 base.name,
-                outside.join(", ")
+                few(&outside)
             ));
         }
         Ok(tree)
@@ -133,7 +133,7 @@ impl<'a> Tree<'a> {
         if !names.is_empty() {
             notes.push(format!(
                 "links that have a shape but no mass, fixed to others that have one, weigh nothing: {}; [[arm.link_masses]] gives them one",
-                names.join(", ")
+                few(&names)
             ));
         }
     }
@@ -170,8 +170,7 @@ impl<'a> Tree<'a> {
                 (placed.link, placed.link_index, placed.moving_from_link)
             };
             next += 1;
-            let children = self.robot.joints.iter();
-            for joint in children.filter(|joint| joint.parent.link == parent.name) {
+            for &joint in graph.below(&parent.name) {
                 let origin = pose_of(&joint.origin, || {
                     format!("origin of joint `{}`", joint.name)
                 })?;
@@ -202,6 +201,28 @@ impl<'a> Tree<'a> {
         }
         Ok(())
     }
+}
+
+/// Longest length in an arm [m].
+pub(super) const LONGEST: f64 = 1000.0;
+
+/// Refuses a number that no arm has, so that no search starts with it.
+pub(super) fn within(
+    value: f64,
+    most: f64,
+    unit: &'static str,
+    location: impl FnOnce() -> String,
+) -> Result<(), Refusal> {
+    // Of what is not finite others say it.
+    if value.is_finite() && value.abs() > most {
+        return Err(Refusal::Absurd {
+            location: location(),
+            value,
+            unit,
+            most,
+        });
+    }
+    Ok(())
 }
 
 /// Unit axis of a joint, in its own frame.
@@ -250,6 +271,7 @@ pub(super) fn pose_of(
     origin: &urdf_rs::Pose,
     location: impl FnOnce() -> String,
 ) -> Result<DPose3, Refusal> {
+    let far = DVec3::from_array(*origin.xyz).abs().max_element();
     let [roll, pitch, yaw] = *origin.rpy;
     // Fixed-axis roll, pitch, yaw: roll turns first.
     let rotation = glam::DQuat::from_rotation_z(yaw)
@@ -257,6 +279,7 @@ pub(super) fn pose_of(
         * glam::DQuat::from_rotation_x(roll);
     let pose = DPose3::from_parts(DVec3::from_array(*origin.xyz), rotation);
     if pose.translation.is_finite() && pose.rotation.is_finite() {
+        within(far, LONGEST, "m", location)?;
         Ok(pose)
     } else {
         Err(Refusal::NotFinite {

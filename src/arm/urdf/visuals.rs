@@ -1,7 +1,7 @@
 //! Shapes in the file that are drawn, their poses and colours.
 
 use super::mesh::{self, MeshPart, bytes};
-use super::tree::{Placed, Tree, pose_of};
+use super::tree::{LONGEST, Placed, Tree, pose_of, within};
 use super::{ArmOptions, Refusal, Visual, VisualShape};
 use glam::DVec3;
 use glamx::DPose3;
@@ -92,7 +92,10 @@ pub(super) fn shapes(
     let plain = |shape| (shape, None, DPose3::IDENTITY);
     let positive = |shape, values: &[f64]| {
         if values.iter().all(|value| value.is_finite() && *value > 0.0) {
-            Ok(())
+            let most = values.iter().copied().fold(0.0, f64::max);
+            within(most, LONGEST, "m", || {
+                format!("{role} {shape} of link `{link}`")
+            })
         } else {
             Err(Refusal::ShapeSize {
                 link: link.clone(),
@@ -136,6 +139,11 @@ pub(super) fn shapes(
                 reason,
             };
             let parts = mesh::load(filename, scale, folder, options, notes).map_err(refused)?;
+            let points = parts.iter().flat_map(|part| &part.vertices);
+            let most = points.fold(0.0, |most: f64, point| most.max(point.abs().max_element()));
+            within(most, LONGEST, "m", || {
+                format!("a coordinate of {role} mesh `{filename}` of link `{link}`, by its scale,")
+            })?;
             let shape = |part: MeshPart| {
                 let shape = VisualShape::Mesh {
                     vertices: part.vertices,

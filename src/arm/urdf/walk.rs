@@ -1,13 +1,18 @@
 //! A strict walk over the XML tree of a URDF file: every element and attribute is one that is read, is passed over by name, or is refused by name.
 
-use std::collections::BTreeMap;
-use std::ops::Range;
+use std::collections::{BTreeMap, BTreeSet};
 
 use roxmltree::{Attribute as Given, Document, Node};
 
 use super::format::{
     Absent, Count, ELEMENTS, Element, Form, JOINT_TYPES, OTHER_FORMATS, PASSED_OVER, ROBOT,
 };
+use crate::xml::{Lines, shown};
+
+/// Most links and joints together: a humanoid with both hands has some 200.
+const MOST_PARTS: usize = 2000;
+/// Most letters of a name or a path.
+const LONGEST: usize = 1000;
 
 /// A fault at a line of the file.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,7 +24,7 @@ pub(super) struct Fault {
 }
 
 /// What a URDF file holds beside what the parser reads.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Walked {
     pub notes: Vec<String>,
     /// Lines of links and joints, by what and name.
@@ -28,16 +33,27 @@ pub(super) struct Walked {
     pub loops: Vec<(u32, String, Vec<String>)>,
     /// Links whose file gives a mass, but no inertia.
     pub without_inertia: Vec<String>,
-    edits: Vec<(Range<usize>, String)>,
+    /// Elements that are left out of the robot, by their numbers in the tree.
+    pub left_out: BTreeSet<usize>,
+    rows: Lines,
     passed: BTreeMap<String, Vec<u32>>,
     put: BTreeMap<String, Vec<u32>>,
 }
 
 /// Walks over a document.
 pub(super) fn walk(document: &Document) -> Result<Walked, Fault> {
-    let mut walked = Walked::default();
+    let mut walked = Walked {
+        notes: Vec::new(),
+        lines: BTreeMap::new(),
+        loops: Vec::new(),
+        without_inertia: Vec::new(),
+        left_out: BTreeSet::new(),
+        rows: Lines::of(document.input_text()),
+        passed: BTreeMap::new(),
+        put: BTreeMap::new(),
+    };
     let root = document.root_element();
-    let line = line_of(root);
+    let line = walked.line_of(root);
     if root.tag_name().name() != ROBOT.name {
         let found = root.tag_name().name();
         let what = match found {
@@ -68,10 +84,6 @@ fn fault(line: u32, words: String) -> Fault {
     }
 }
 
-fn line_of(node: Node) -> u32 {
-    node.document().text_pos_at(node.range().start).row
-}
-
 /// The name nearest to a misspelt one.
 fn nearest<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     let lower = word.to_lowercase();
@@ -99,22 +111,8 @@ fn lines_in_words(lines: &[u32]) -> String {
 }
 
 impl Walked {
-    /// The text with what the parser asks for put in, and without what is left out.
-    pub fn edited(&self, text: &str) -> String {
-        let mut edits: Vec<_> = self.edits.iter().collect();
-        edits.sort_by_key(|(range, _)| (range.start, range.end));
-        let mut edited = String::with_capacity(text.len());
-        let mut end = 0;
-        for (range, new) in edits {
-            // Within something that is left out already.
-            if range.start < end {
-                continue;
-            }
-            edited += &text[end..range.start];
-            edited += new;
-            end = range.end;
-        }
-        edited + &text[end..]
+    fn line_of(&self, node: Node) -> u32 {
+        self.rows.at(node.range().start)
     }
 
     fn sum_up(&mut self) {
@@ -133,7 +131,7 @@ impl Walked {
     }
 
     fn element(&mut self, node: Node, element: &Element, owner: &str) -> Result<(), Fault> {
-        let line = line_of(node);
+        let line = self.line_of(node);
         let named = |kind: &'static str| node.attribute("name").map(|name| (kind, name.to_owned()));
         let own = match element.name {
             "link" => named("link"),
@@ -141,19 +139,26 @@ impl Walked {
             _ => None,
         };
         let owner = match &own {
-            Some((kind, name)) => format!("{kind} `{name}`"),
+            Some((kind, name)) => format!("{kind} `{}`", shown(name)),
             None => owner.to_owned(),
         };
         if let Some((kind, name)) = own {
             if let Some(first) = self.lines.get(&(kind, name.clone())) {
-                let twice =
-                    format!("{kind} `{name}` is defined twice, the first time on line {first}");
+                let twice = format!(
+                    "{kind} `{}` is defined twice, the first time on line {first}",
+                    shown(&name)
+                );
                 return Err(fault(line, twice));
             }
             self.lines.insert((kind, name), line);
+            if self.lines.len() > MOST_PARTS {
+                let words =
+                    format!("it has more than {MOST_PARTS} links and joints, expected fewer");
+                return Err(fault(line, words));
+            }
         }
         for attribute in node.attributes() {
-            self.attribute(node, attribute, element, &owner)?;
+            self.attribute(attribute, element, &owner)?;
         }
         self.absent_attributes(node, element, &owner)?;
         let mut counts = vec![0; element.children.len()];
@@ -163,7 +168,7 @@ impl Walked {
             } else if let Some(text) = child.text().filter(|_| child.is_text())
                 && !text.trim().is_empty()
             {
-                let line = line_of(child);
+                let line = self.line_of(child);
                 let shown: String = text.trim().chars().take(30).collect();
                 let words = format!(
                     "{owner}: <{}> holds the text \"{shown}\", expected {}",
@@ -190,7 +195,7 @@ impl Walked {
         owner: &str,
         counts: &mut [usize],
     ) -> Result<(), Fault> {
-        let line = line_of(node);
+        let line = self.line_of(node);
         let name = node.tag_name().name();
         if let Some(space) = node.tag_name().namespace() {
             if is_xacro(space) {
@@ -201,7 +206,7 @@ impl Walked {
                 });
             }
             self.pass_over(format!("<{name}> of the namespace {space}"), line);
-            self.edits.push((node.range(), String::new()));
+            self.left_out.insert(node.id().get_usize());
             return Ok(());
         }
         let known = |child: &super::format::Child| child.element.name == name;
@@ -225,7 +230,7 @@ impl Walked {
 
     /// An element that the format does not have here.
     fn unknown(&mut self, node: Node, outer: &Element, owner: &str) -> Result<(), Fault> {
-        let (line, name) = (line_of(node), node.tag_name().name());
+        let (line, name) = (self.line_of(node), node.tag_name().name());
         let refused = |expected: String| {
             let words = format!(
                 "{owner}: <{name}> is no element of <{}>; {expected}",
@@ -244,7 +249,7 @@ impl Walked {
                 .filter_map(|child| Some(child.attribute("link")?.to_owned()));
             let name = node.attribute("name").unwrap_or_default().to_owned();
             self.loops.push((line, name, joined.collect()));
-            self.edits.push((node.range(), String::new()));
+            self.left_out.insert(node.id().get_usize());
             return Ok(());
         }
         if !is_passed {
@@ -279,31 +284,25 @@ impl Walked {
             None => format!("<{name}> in <{}>", outer.name),
         };
         self.pass_over(what, line);
-        // The parser would take some of them for its own.
-        self.edits.push((node.range(), String::new()));
+        self.left_out.insert(node.id().get_usize());
         Ok(())
     }
 
-    fn attribute(
-        &mut self,
-        node: Node,
-        given: Given,
-        element: &Element,
-        owner: &str,
-    ) -> Result<(), Fault> {
-        let document = node.document();
-        let line = document.text_pos_at(given.range().start).row;
+    fn attribute(&mut self, given: Given, element: &Element, owner: &str) -> Result<(), Fault> {
+        let line = self.rows.at(given.range().start);
         let (name, value) = (given.name(), given.value());
         if value.contains("${") || value.contains("$(") {
             return Err(Fault {
                 line,
-                words: format!("{owner}: {name}=\"{value}\" is left to be evaluated"),
+                words: format!(
+                    "{owner}: {name}=\"{}\" is left to be evaluated",
+                    shown(value)
+                ),
                 xacro: true,
             });
         }
         if given.namespace().is_some() {
             self.pass_over(format!("{name} of another namespace"), line);
-            self.edits.push((given.range(), String::new()));
             return Ok(());
         }
         let Some(known) = element.attributes.iter().find(|known| known.name == name) else {
@@ -333,8 +332,9 @@ impl Walked {
             }
         };
         let words = format!(
-            "{owner}: <{}> has {name}=\"{value}\", expected {expected}",
-            element.name
+            "{owner}: <{}> has {name}=\"{}\", expected {expected}",
+            element.name,
+            shown(value)
         );
         Err(fault(line, words))
     }
@@ -346,7 +346,18 @@ impl Walked {
         name: &str,
         owner: &str,
     ) -> Result<(), Fault> {
-        let location = format!("{owner}: <{}> has {name}=\"{value}\"", element.name);
+        let location = format!(
+            "{owner}: <{}> has {name}=\"{}\"",
+            element.name,
+            shown(value)
+        );
+        if value.len() > LONGEST {
+            let words = format!(
+                "{location} of {} letters, expected {LONGEST} at most",
+                value.len()
+            );
+            return Err(fault(line, words));
+        }
         if element.name == "joint" && name == "type" && !JOINT_TYPES.contains(&value) {
             let expected = match nearest(value, JOINT_TYPES.into_iter()) {
                 Some(meant) => format!("did you mean {meant}?"),
@@ -367,31 +378,25 @@ impl Walked {
         element: &Element,
         owner: &str,
     ) -> Result<(), Fault> {
-        let line = line_of(node);
-        // Behind the element's name.
-        let place = node.range().start + 1 + element.name.len();
+        let line = self.line_of(node);
         for known in element.attributes {
             if node.has_attribute(known.name) {
                 continue;
             }
             let name = known.name;
             match known.absent {
-                Absent::Default => {}
+                Absent::Default | Absent::Put(_) => {}
                 Absent::Refused => {
                     let words = format!("{owner}: <{}> has no {name}, expected one", element.name);
                     return Err(fault(line, words));
                 }
-                Absent::Put(value) | Absent::Noted(value) => {
-                    let put = format!(" {name}=\"{value}\"");
-                    self.edits.push((place..place, put));
+                Absent::Noted(value) => {
+                    let what = format!(
+                        "{owner}: <{}> has no {name}, taken as {value}",
+                        element.name
+                    );
+                    self.put.entry(what).or_default().push(line);
                 }
-            }
-            if let Absent::Noted(value) = known.absent {
-                let what = format!(
-                    "{owner}: <{}> has no {name}, taken as {value}",
-                    element.name
-                );
-                self.put.entry(what).or_default().push(line);
             }
         }
         Ok(())
@@ -403,11 +408,7 @@ impl Walked {
             "visual" | "collision" => self.shape(node, element.name, owner),
             "inertial" => {
                 let has = |name: &str| node.children().find(|child| child.has_tag_name(name));
-                if let (Some(mass), None) = (has("mass"), has("inertia")) {
-                    let end = mass.range().end;
-                    let zero =
-                        "<inertia ixx=\"0\" ixy=\"0\" ixz=\"0\" iyy=\"0\" iyz=\"0\" izz=\"0\"/>";
-                    self.edits.push((end..end, zero.to_owned()));
+                if let (Some(_), None) = (has("mass"), has("inertia")) {
                     let link = node
                         .parent_element()
                         .and_then(|link| link.attribute("name"));
@@ -421,7 +422,7 @@ impl Walked {
 
     /// A shape: left out, with a note, where it has no extent.
     fn shape(&mut self, node: Node, role: &str, owner: &str) -> Result<(), Fault> {
-        let line = line_of(node);
+        let line = self.line_of(node);
         let geometry = node.children().find(|child| child.has_tag_name("geometry"));
         let shapes: Vec<Node> = geometry
             .iter()
@@ -452,7 +453,7 @@ impl Walked {
         };
         let what = format!("{owner}: a {role} shape {why}: it is left out");
         self.put.entry(what).or_default().push(line);
-        self.edits.push((node.range(), String::new()));
+        self.left_out.insert(node.id().get_usize());
         Ok(())
     }
 }

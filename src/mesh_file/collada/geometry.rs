@@ -1,11 +1,14 @@
 //! The triangles of one COLLADA geometry.
 
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
 use glam::DVec3;
 use roxmltree::Node;
 
 use super::tree::{Tree, child, children, is};
-use crate::mesh_file::polygon::{fan, split, strip};
-use crate::mesh_file::scene::{Fault, MeshPart};
+use crate::mesh_file::polygon::{Effort, fan, split, strip};
+use crate::mesh_file::scene::{Fault, MeshPart, with_own_points};
 
 /// A geometry by the symbols of its materials.
 pub(super) struct Geometry {
@@ -16,7 +19,26 @@ pub(super) struct Geometry {
     pub(super) doubtful: Option<String>,
 }
 
-pub(super) fn geometry<'a>(tree: &Tree<'a>, element: Node<'a, 'a>) -> Result<Geometry, Fault> {
+/// What geometries share: points of sources that were read already, by their place in the text, and the effort left to split polygons.
+pub(super) struct Shared {
+    points: BTreeMap<usize, Rc<Vec<DVec3>>>,
+    effort: Effort,
+}
+
+impl Shared {
+    pub(super) fn new() -> Self {
+        Self {
+            points: BTreeMap::new(),
+            effort: Effort::new(),
+        }
+    }
+}
+
+pub(super) fn geometry<'a>(
+    tree: &Tree<'a>,
+    element: Node<'a, 'a>,
+    shared: &mut Shared,
+) -> Result<Geometry, Fault> {
     let mut found = Geometry {
         parts: Vec::new(),
         bent: 0,
@@ -39,16 +61,12 @@ pub(super) fn geometry<'a>(tree: &Tree<'a>, element: Node<'a, 'a>) -> Result<Geo
             // Sources, lines, what belongs to a program.
             continue;
         }
-        let Some(input) = positions(tree, primitive)? else {
+        let Some(input) = positions(tree, primitive, shared)? else {
             continue;
         };
-        let triangles = triangles(tree, primitive, &input, &mut found)?;
+        let triangles = triangles(tree, primitive, &input, &mut found, &shared.effort)?;
         let symbol = primitive.attribute("material").unwrap_or_default();
-        let part = MeshPart {
-            points: input.points,
-            triangles,
-            colour: None,
-        };
+        let part = with_own_points(&input.points, &triangles);
         found.parts.push((symbol.to_owned(), part));
     }
     Ok(found)
@@ -56,7 +74,7 @@ pub(super) fn geometry<'a>(tree: &Tree<'a>, element: Node<'a, 'a>) -> Result<Geo
 
 /// What a primitive's corners mean.
 struct Input {
-    points: Vec<DVec3>,
+    points: Rc<Vec<DVec3>>,
     /// Place of a point's index among those of a corner.
     offset: usize,
     /// Indices of a corner.
@@ -92,11 +110,13 @@ fn triangles<'a>(
     primitive: Node<'a, 'a>,
     input: &Input,
     found: &mut Geometry,
+    effort: &Effort,
 ) -> Result<Vec<[u32; 3]>, Fault> {
     let mut polygons = Polygons {
         points: &input.points,
         triangles: Vec::new(),
         found,
+        effort,
     };
     match primitive.tag_name().name() {
         "triangles" => {
@@ -144,6 +164,7 @@ struct Polygons<'a> {
     points: &'a [DVec3],
     triangles: Vec<[u32; 3]>,
     found: &'a mut Geometry,
+    effort: &'a Effort,
 }
 
 impl Polygons<'_> {
@@ -154,12 +175,8 @@ impl Polygons<'_> {
         corners: &[u32],
         holes: &[Vec<u32>],
     ) -> Result<(), Fault> {
-        let Some(split) = split(self.points, corners, holes) else {
-            return Err(tree.fault(
-                face,
-                "the sides of a face cross each other, expected a plane face, or triangles",
-            ));
-        };
+        let split = split(self.points, corners, holes, self.effort)
+            .map_err(|reason| tree.fault(face, reason))?;
         self.found.bent += usize::from(split.off_plane.is_some());
         if split.folded {
             self.found.doubtful.get_or_insert_with(|| {
@@ -207,7 +224,11 @@ fn polylist(
 }
 
 /// What a primitive's corners mean; none without faces.
-fn positions<'a>(tree: &Tree<'a>, primitive: Node<'a, 'a>) -> Result<Option<Input>, Fault> {
+fn positions<'a>(
+    tree: &Tree<'a>,
+    primitive: Node<'a, 'a>,
+    shared: &mut Shared,
+) -> Result<Option<Input>, Fault> {
     let offset = |input: Node| -> Result<usize, Fault> {
         // `idx` is that of COLLADA 1.3.
         let text = input
@@ -248,12 +269,28 @@ fn positions<'a>(tree: &Tree<'a>, primitive: Node<'a, 'a>) -> Result<Option<Inpu
     }
     match own {
         Some((source, offset)) => Ok(Some(Input {
-            points: points(tree, source)?,
+            points: shared.points(tree, source)?,
             offset,
             stride,
         })),
         None if child(primitive, "p").is_none() => Ok(None),
         None => Err(tree.fault(primitive, "it has no input VERTEX")),
+    }
+}
+
+impl Shared {
+    fn points<'a>(
+        &mut self,
+        tree: &Tree<'a>,
+        source: Node<'a, 'a>,
+    ) -> Result<Rc<Vec<DVec3>>, Fault> {
+        let place = source.range().start;
+        if let Some(known) = self.points.get(&place) {
+            return Ok(Rc::clone(known));
+        }
+        let read = Rc::new(points(tree, source)?);
+        self.points.insert(place, Rc::clone(&read));
+        Ok(read)
     }
 }
 

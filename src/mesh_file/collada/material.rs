@@ -4,16 +4,20 @@ use roxmltree::Node;
 
 use super::tree::{Tree, child, is};
 
-/// The colour that an instance binds to a symbol; none where it has a texture, or nothing.
-pub(super) fn colour<'a>(
+/// The material that an instance binds to a symbol.
+pub(super) fn material<'a>(
     tree: &Tree<'a>,
     instance: Node<'a, 'a>,
     symbol: &str,
-) -> Option<[f64; 4]> {
+) -> Option<Node<'a, 'a>> {
     let bound = instance
         .descendants()
         .find(|node| is(*node, "instance_material") && node.attribute("symbol") == Some(symbol))?;
-    let material = tree.target(bound, "target", "material").ok()?;
+    tree.target(bound, "target", "material").ok()
+}
+
+/// The colour of a material; none where it has a texture, or nothing.
+pub(super) fn colour<'a>(tree: &Tree<'a>, material: Node<'a, 'a>) -> Option<[f64; 4]> {
     let effect = tree
         .target(child(material, "instance_effect")?, "url", "effect")
         .ok()?;

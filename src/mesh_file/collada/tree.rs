@@ -1,19 +1,25 @@
 //! The XML tree of a COLLADA document: elements by name, targets by id, numbers.
 
+use std::cell::Cell;
 use std::collections::HashMap;
 
 use roxmltree::{Document, Node};
 
 use crate::mesh_file::scene::Fault;
-use crate::mesh_file::text::number;
+use crate::mesh_file::text::{number, shown};
+use crate::xml::Lines;
 
-/// Levels of elements in elements; deeper ones are no scene that a program has written.
-const DEEPEST: usize = 400;
+/// Times that the letters of a document may be read as numbers, on an average, and letters that always may: elements may name the same numbers again and again.
+const MOST_TIMES: usize = 4;
+const ALWAYS: usize = 16 << 20;
 
 pub(super) struct Tree<'a> {
     document: &'a Document<'a>,
     /// Only looked up: the hash order cannot reach a result.
     by_id: HashMap<&'a str, Node<'a, 'a>>,
+    lines: Lines,
+    /// Letters that may yet be read as numbers.
+    letters: Cell<usize>,
 }
 
 /// Whether an element has a name, in whatever namespace.
@@ -34,34 +40,6 @@ pub(super) fn children<'a>(
     node.children().filter(move |child| is(*child, name))
 }
 
-/// The parser goes one level deeper into the stack with each element: so deep ones are refused before.
-pub(super) fn checked_depth(text: &str) -> Result<(), Fault> {
-    let mut depth = 0_usize;
-    let mut rest = text;
-    while let Some(place) = rest.find('<') {
-        rest = &rest[place..];
-        let end = match rest {
-            _ if rest.starts_with("<!--") => "-->",
-            _ if rest.starts_with("<![CDATA[") => "]]>",
-            _ => ">",
-        };
-        let length = rest.find(end).map_or(rest.len(), |found| found + end.len());
-        let tag = &rest[..length];
-        if tag.starts_with("</") {
-            depth = depth.saturating_sub(1);
-        } else if !tag.starts_with("<!") && !tag.starts_with("<?") && !tag.ends_with("/>") {
-            depth += 1;
-        }
-        if depth > DEEPEST {
-            return Err(Fault::malformed(format!(
-                "its elements lie more than {DEEPEST} deep in each other"
-            )));
-        }
-        rest = &rest[length..];
-    }
-    Ok(())
-}
-
 impl<'a> Tree<'a> {
     pub(super) fn new(document: &'a Document<'a>) -> Result<Self, Fault> {
         let mut by_id = HashMap::new();
@@ -70,7 +48,13 @@ impl<'a> Tree<'a> {
                 by_id.entry(id).or_insert(node);
             }
         }
-        let tree = Self { document, by_id };
+        let text = document.input_text();
+        let tree = Self {
+            document,
+            by_id,
+            lines: Lines::of(text),
+            letters: Cell::new(MOST_TIMES * text.len() + ALWAYS),
+        };
         if is(tree.root(), "COLLADA") {
             return Ok(tree);
         }
@@ -85,7 +69,7 @@ impl<'a> Tree<'a> {
     }
 
     pub(super) fn line(&self, node: Node) -> u32 {
-        self.document.text_pos_at(node.range().start).row
+        self.lines.at(node.range().start)
     }
 
     /// A fault at an element.
@@ -110,21 +94,27 @@ impl<'a> Tree<'a> {
                 "" => self.fault(node, format!("it has no {attribute}")),
                 _ => Fault::unsupported(
                     format!(
-                        "line {}: <{}> of another document ({url})",
+                        "line {}: <{}> of another document ({})",
                         self.line(node),
-                        node.tag_name().name()
+                        node.tag_name().name(),
+                        shown(url)
                     ),
                     "export the scene as one file",
                 ),
             });
         };
         let found = self.by_id.get(id).copied().filter(|found| is(*found, name));
-        found.ok_or_else(|| self.fault(node, format!("there is no <{name}> with the id `{id}`")))
+        found.ok_or_else(|| {
+            self.fault(
+                node,
+                format!("there is no <{name}> with the id `{}`", shown(id)),
+            )
+        })
     }
 
     /// An element's numbers.
     pub(super) fn numbers(&self, node: Node) -> Result<Vec<f64>, Fault> {
-        let text = whole_text(node);
+        let text = self.text(node)?;
         let words = text.split_ascii_whitespace();
         words
             .map(|word| number(word).map_err(|reason| self.fault(node, reason)))
@@ -133,24 +123,38 @@ impl<'a> Tree<'a> {
 
     /// An element's indices.
     pub(super) fn indices(&self, node: Node) -> Result<Vec<u32>, Fault> {
-        let text = whole_text(node);
+        let text = self.text(node)?;
         let index = |word: &str| {
             word.parse().map_err(|_| {
                 self.fault(
                     node,
-                    format!("`{word}` is no index, expected a whole number from 0"),
+                    format!(
+                        "`{}` is no index, expected a whole number from 0",
+                        shown(word)
+                    ),
                 )
             })
         };
         text.split_ascii_whitespace().map(index).collect()
     }
-}
 
-/// An element's text, also where a comment stands within.
-fn whole_text(node: Node) -> String {
-    let texts = node
-        .children()
-        .filter(Node::is_text)
-        .filter_map(|text| text.text());
-    texts.collect::<Vec<_>>().join("")
+    /// An element's text, also where a comment stands within.
+    fn text(&self, node: Node) -> Result<String, Fault> {
+        let texts = node
+            .children()
+            .filter(Node::is_text)
+            .filter_map(|text| text.text());
+        let text = texts.collect::<Vec<_>>().join("");
+        // Also of an element without text, which is looked at all the same.
+        match self.letters.get().checked_sub(text.len() + 16) {
+            Some(left) => {
+                self.letters.set(left);
+                Ok(text)
+            }
+            None => Err(Fault::unsupported(
+                "a scene that names the same numbers again and again",
+                "export a simpler one",
+            )),
+        }
+    }
 }

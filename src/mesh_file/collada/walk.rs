@@ -5,10 +5,10 @@ use std::collections::BTreeMap;
 use glam::{DMat3, DMat4, DVec3};
 use roxmltree::Node;
 
-use super::geometry::{Geometry, geometry};
-use super::material::colour;
+use super::geometry::{Geometry, Shared, geometry};
+use super::material::{colour, material};
 use super::tree::{Tree, is};
-use crate::mesh_file::scene::{Fault, MeshFile, MeshPart};
+use crate::mesh_file::scene::{Assembly, Fault, MeshPart};
 
 /// Levels of nodes and instances of nodes in each other; of more, or of nodes that hold themselves, there is no end.
 const DEEPEST: usize = 200;
@@ -17,6 +17,9 @@ pub(super) struct Walk<'a> {
     tree: &'a Tree<'a>,
     /// Geometries that were read already, by their place in the text.
     known: BTreeMap<usize, Geometry>,
+    shared: Shared,
+    /// Colours of materials, by their place in the text.
+    colours: BTreeMap<usize, Option<[f64; 4]>>,
     depth: usize,
     /// Faces that are not plane.
     pub(super) bent: usize,
@@ -29,6 +32,8 @@ impl<'a> Walk<'a> {
         Self {
             tree,
             known: BTreeMap::new(),
+            shared: Shared::new(),
+            colours: BTreeMap::new(),
             depth: 0,
             bent: 0,
             doubtful: None,
@@ -40,10 +45,10 @@ impl<'a> Walk<'a> {
         &mut self,
         parent: Node<'a, 'a>,
         place: DMat4,
-        file: &mut MeshFile,
+        assembly: &mut Assembly,
     ) -> Result<(), Fault> {
         for node in parent.children().filter(|child| is(*child, "node")) {
-            self.node(node, place, file)?;
+            self.node(node, place, assembly)?;
         }
         Ok(())
     }
@@ -52,7 +57,7 @@ impl<'a> Walk<'a> {
     pub(super) fn all_geometries(
         &mut self,
         place: DMat4,
-        file: &mut MeshFile,
+        assembly: &mut Assembly,
     ) -> Result<(), Fault> {
         let all: Vec<_> = self
             .tree
@@ -61,10 +66,12 @@ impl<'a> Walk<'a> {
             .filter(|node| is(*node, "geometry"))
             .collect();
         for node in &all {
-            self.instance(*node, None, place, file)?;
+            self.instance(*node, None, place, assembly)?;
         }
         if !all.is_empty() {
-            file.notes
+            assembly
+                .file
+                .notes
                 .push("it has no scene: its geometries were read where they are".to_owned());
         }
         Ok(())
@@ -74,7 +81,7 @@ impl<'a> Walk<'a> {
         &mut self,
         node: Node<'a, 'a>,
         parent: DMat4,
-        file: &mut MeshFile,
+        assembly: &mut Assembly,
     ) -> Result<(), Fault> {
         if self.depth > DEEPEST {
             return Err(self.tree.fault(
@@ -83,6 +90,7 @@ impl<'a> Walk<'a> {
             ));
         }
         self.depth += 1;
+        assembly.pass(1 + node.children().count())?;
         let mut place = parent;
         for child in node.children().filter(Node::is_element) {
             if let Some(transform) = self.transform(child)? {
@@ -93,11 +101,11 @@ impl<'a> Walk<'a> {
             match child.tag_name().name() {
                 "instance_geometry" => {
                     let target = self.tree.target(child, "url", "geometry")?;
-                    self.instance(target, Some(child), place, file)?;
+                    self.instance(target, Some(child), place, assembly)?;
                 }
                 "instance_node" => {
                     let target = self.tree.target(child, "url", "node")?;
-                    self.node(target, place, file)?;
+                    self.node(target, place, assembly)?;
                 }
                 "instance_controller" => {
                     return Err(Fault::unsupported(
@@ -108,7 +116,7 @@ impl<'a> Walk<'a> {
                         "export the mesh as it stands, without bones",
                     ));
                 }
-                "node" => self.node(child, place, file)?,
+                "node" => self.node(child, place, assembly)?,
                 _ => {}
             }
         }
@@ -121,22 +129,30 @@ impl<'a> Walk<'a> {
         element: Node<'a, 'a>,
         instance: Option<Node<'a, 'a>>,
         place: DMat4,
-        file: &mut MeshFile,
+        assembly: &mut Assembly,
     ) -> Result<(), Fault> {
         if !self.known.contains_key(&element.range().start) {
-            let read = geometry(self.tree, element)?;
+            let read = geometry(self.tree, element, &mut self.shared)?;
             self.bent += read.bent;
             if self.doubtful.is_none() {
                 self.doubtful.clone_from(&read.doubtful);
             }
             self.known.insert(element.range().start, read);
         }
-        for (material, triangles) in &self.known[&element.range().start].parts {
+        let parts = &self.known[&element.range().start].parts;
+        // Each part looks for its material there.
+        let bound = instance.map_or(0, |instance| instance.descendants().count());
+        for (symbol, triangles) in parts {
+            assembly.pass(bound)?;
+            let own = instance.and_then(|instance| material(self.tree, instance, symbol));
             let part = MeshPart {
-                colour: instance.and_then(|instance| colour(self.tree, instance, material)),
+                colour: own.and_then(|own| {
+                    let known = self.colours.entry(own.range().start);
+                    *known.or_insert_with(|| colour(self.tree, own))
+                }),
                 ..triangles.clone()
             };
-            file.place(&part, place)?;
+            assembly.place(&part, place)?;
         }
         Ok(())
     }

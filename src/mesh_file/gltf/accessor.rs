@@ -1,9 +1,14 @@
 //! Numbers of a glTF file: an accessor's view of a buffer.
 
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
 use glam::DVec3;
 use serde::Deserialize;
+use serde::de::IgnoredAny;
 
-use crate::mesh_file::scene::Fault;
+use crate::mesh_file::scene::{Fault, bounded};
+use crate::mesh_file::text::shown;
 
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "camelCase")]
@@ -17,7 +22,7 @@ pub(super) struct Accessor {
     count: usize,
     #[serde(rename = "type")]
     kind: String,
-    sparse: Option<serde_json::Value>,
+    sparse: Option<IgnoredAny>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -32,26 +37,67 @@ pub(super) struct BufferView {
 
 /// Buffers with what says how they are read.
 pub(super) struct Buffers<'a> {
-    pub(super) data: &'a [Vec<u8>],
-    pub(super) views: &'a [BufferView],
-    pub(super) accessors: &'a [Accessor],
+    data: &'a [Vec<u8>],
+    views: &'a [BufferView],
+    accessors: &'a [Accessor],
+    /// Positions that were read already: primitives may share them.
+    known: BTreeMap<usize, Rc<Vec<DVec3>>>,
+    /// Points and indices read so far: views may lie over each other.
+    points: usize,
+    indices: usize,
 }
 
-impl Buffers<'_> {
+impl<'a> Buffers<'a> {
+    pub(super) fn new(
+        data: &'a [Vec<u8>],
+        views: &'a [BufferView],
+        accessors: &'a [Accessor],
+    ) -> Self {
+        Self {
+            data,
+            views,
+            accessors,
+            known: BTreeMap::new(),
+            points: 0,
+            indices: 0,
+        }
+    }
+
     /// Positions.
-    pub(super) fn points(&self, accessor: usize) -> Result<Vec<DVec3>, Fault> {
-        let numbers = self.numbers(accessor, "VEC3", 3)?;
-        Ok(numbers.chunks_exact(3).map(DVec3::from_slice).collect())
+    pub(super) fn points(&mut self, accessor: usize) -> Result<Rc<Vec<DVec3>>, Fault> {
+        if let Some(known) = self.known.get(&accessor) {
+            return Ok(Rc::clone(known));
+        }
+        let count = self.accessors.get(accessor).map_or(0, |own| own.count);
+        self.points = self.points.saturating_add(count);
+        bounded(0, self.points)?;
+        let mut points = Vec::new();
+        self.entries(accessor, "VEC3", |at| {
+            points.push(DVec3::new(at(0), at(1), at(2)));
+        })?;
+        let points = Rc::new(points);
+        self.known.insert(accessor, Rc::clone(&points));
+        Ok(points)
     }
 
     /// Indices of vertices.
-    pub(super) fn indices(&self, accessor: usize) -> Result<Vec<u32>, Fault> {
-        let numbers = self.numbers(accessor, "SCALAR", 1)?;
-        Ok(numbers.iter().map(|number| *number as u32).collect())
+    pub(super) fn indices(&mut self, accessor: usize) -> Result<Vec<u32>, Fault> {
+        let count = self.accessors.get(accessor).map_or(0, |own| own.count);
+        self.indices = self.indices.saturating_add(count);
+        bounded(self.indices / 3, 0)?;
+        let mut indices = Vec::new();
+        self.entries(accessor, "SCALAR", |at| indices.push(at(0) as u32))?;
+        Ok(indices)
     }
 
-    /// `width` numbers of each of an accessor's entries.
-    fn numbers(&self, index: usize, kind: &str, width: usize) -> Result<Vec<f64>, Fault> {
+    /// Hands on each of an accessor's entries, as its numbers by their places.
+    fn entries(
+        &self,
+        index: usize,
+        kind: &str,
+        mut take: impl FnMut(&dyn Fn(usize) -> f64),
+    ) -> Result<(), Fault> {
+        let width = if kind == "VEC3" { 3 } else { 1 };
         let fault = |reason: String| Fault::malformed(format!("accessor {index}: {reason}"));
         let accessor = self
             .accessors
@@ -60,7 +106,7 @@ impl Buffers<'_> {
         if accessor.kind != kind {
             return Err(fault(format!(
                 "its type is {}, expected {kind}",
-                accessor.kind
+                shown(&accessor.kind)
             )));
         }
         if accessor.sparse.is_some() {
@@ -93,19 +139,18 @@ impl Buffers<'_> {
             .byte_stride
             .filter(|stride| *stride > 0)
             .unwrap_or(size * width);
-        let mut found = Vec::new();
         for entry in 0..accessor.count {
-            for component in 0..width {
-                let at = entry
-                    .checked_mul(stride)
-                    .and_then(|at| at.checked_add(accessor.byte_offset + component * size));
-                let value = at.and_then(|at| bytes.get(at..at.checked_add(size)?));
-                let value =
-                    value.ok_or_else(|| fault("it goes beyond its view's end".to_owned()))?;
-                found.push(number(value, accessor.component_type, accessor.normalized));
-            }
+            let at = entry
+                .checked_mul(stride)
+                .and_then(|at| at.checked_add(accessor.byte_offset));
+            let own = at.and_then(|at| bytes.get(at..at.checked_add(width * size)?));
+            let own = own.ok_or_else(|| fault("it goes beyond its view's end".to_owned()))?;
+            take(&|place| {
+                let value = &own[place * size..(place + 1) * size];
+                number(value, accessor.component_type, accessor.normalized)
+            });
         }
-        Ok(found)
+        Ok(())
     }
 }
 

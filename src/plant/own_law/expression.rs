@@ -5,6 +5,8 @@
 //! ```
 //!
 //! `^` binds before a sign, as on paper: -v^2 is -(v^2). A comparison is 1 where it holds and 0 elsewhere.
+//!
+//! It is kept as steps, operands before what is done with them, so that nothing but the parser goes deeper into the stack with each bracket, and that is bounded.
 
 use std::ops::Range;
 
@@ -19,6 +21,13 @@ use winnow::token::{any, literal, take_while};
 use winnow::{ModalResult, Parser};
 
 use super::unit::Unit;
+
+/// Most letters of an expression.
+const LONGEST: usize = 10_000;
+/// Most brackets, signs and powers in each other: the parser goes deeper into the stack with each.
+const DEEPEST: usize = 100;
+/// Most values that wait for others while one is evaluated.
+const WAITING: usize = 64;
 
 /// A fault of an expression, and its place in the text.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -96,9 +105,9 @@ impl Operation {
     }
 }
 
-/// A part of an expression, with the bytes of its text.
+/// A step of an expression, with the bytes of the text whose value it is.
 #[derive(Debug, Clone)]
-struct Node {
+struct Step {
     span: Range<usize>,
     kind: Kind,
 }
@@ -109,16 +118,21 @@ enum Kind {
     /// A name that is still to be looked up.
     Name(String),
     Value(usize),
-    Negative(Box<Node>),
-    Function(Function, Box<Node>),
-    Operation(Operation, Box<[Node; 2]>),
+    /// Of the value before it.
+    Negative,
+    Function(Function),
+    /// Of the two values before it.
+    Operation(Operation),
 }
+
+/// The steps of a part of an expression; the last is the part's own.
+type Part = Vec<Step>;
 
 /// An expression over values given by their places in a list.
 #[derive(Debug, Clone)]
 pub struct Expression {
     text: String,
-    root: Node,
+    steps: Vec<Step>,
 }
 
 impl PartialEq for Expression {
@@ -143,18 +157,20 @@ impl Expression {
     /// # Errors
     /// It is no expression, or has a name that is not among them.
     pub fn read(text: &str, names: &[&str]) -> Result<Self, ExpressionError> {
-        let mut root = whole.parse(LocatingSlice::new(text)).map_err(|error| {
+        check_extent(text)?;
+        let mut steps = whole.parse(LocatingSlice::new(text)).map_err(|error| {
             let at = error.offset().min(text.len());
             ExpressionError {
                 span: at..(at + 1).min(text.len()).max(at),
                 reason: "expected a number, a name, a function such as max(..) or a bracket, joined by + - * / ^ < >".to_owned(),
             }
         })?;
-        include_signs(&mut root, text);
-        look_up(&mut root, names)?;
+        include_signs(&mut steps, text);
+        steps.iter_mut().try_for_each(|step| look_up(step, names))?;
+        check_waiting(&steps)?;
         Ok(Self {
             text: text.to_owned(),
-            root,
+            steps,
         })
     }
 
@@ -167,13 +183,18 @@ impl Expression {
     /// Its value, of these values of the names.
     #[must_use]
     pub fn value(&self, values: &[f64]) -> f64 {
-        value(&self.root, values)
+        let (mut waiting, mut count) = ([0.0; WAITING], 0);
+        for step in &self.steps {
+            count = step.kind.pushed(count, values, &mut waiting);
+        }
+        waiting[0]
     }
 
     /// Whether it uses the name of this place.
     #[must_use]
     pub fn uses(&self, place: usize) -> bool {
-        uses(&self.root, place)
+        let is_it = |step: &Step| matches!(step.kind, Kind::Value(own) if own == place);
+        self.steps.iter().any(is_it)
     }
 
     /// Checks that it adds only what has the same unit, and that it has the unit expected of it; `units` of the names, where they are known.
@@ -185,9 +206,9 @@ impl Expression {
         units: &[Option<Unit>],
         expected: Unit,
     ) -> Result<(), ExpressionError> {
-        match unit(&self.root, units)? {
+        match unit(&self.steps, units)? {
             InferredUnit::Unit(found) if found != expected => Err(ExpressionError {
-                span: self.root.span.clone(),
+                span: self.steps.last().map_or(0..0, |step| step.span.clone()),
                 reason: format!("it is in {found}, expected {expected}"),
             }),
             _ => Ok(()),
@@ -199,24 +220,144 @@ impl Expression {
     /// # Errors
     /// The innermost part that is not.
     pub fn check_finite(&self, values: &[f64]) -> Result<(), ExpressionError> {
-        finite(&self.root, values).map(|_| ())
+        let (mut waiting, mut count) = ([0.0; WAITING], 0);
+        for step in &self.steps {
+            count = step.kind.pushed(count, values, &mut waiting);
+            if !waiting[count - 1].is_finite() {
+                return Err(ExpressionError {
+                    span: step.span.clone(),
+                    reason: "it is not finite".to_owned(),
+                });
+            }
+        }
+        Ok(())
     }
+}
+
+impl Kind {
+    /// Takes what it needs of the values that wait, and puts its own there; how many wait then.
+    fn pushed(&self, count: usize, values: &[f64], waiting: &mut [f64; WAITING]) -> usize {
+        let (place, found) = match self {
+            Self::Number(number) => (count, *number),
+            Self::Value(place) => (count, values[*place]),
+            // Looked up as the expression was read.
+            Self::Name(_) => (count, f64::NAN),
+            Self::Negative => (count - 1, -waiting[count - 1]),
+            Self::Function(function) => (count - 1, (function.law)(waiting[count - 1])),
+            Self::Operation(operation) => {
+                let [a, b] = [waiting[count - 2], waiting[count - 1]];
+                (count - 2, operation.apply(a, b))
+            }
+        };
+        waiting[place] = found;
+        place + 1
+    }
+
+    /// How many values it takes.
+    fn taken(&self) -> usize {
+        match self {
+            Self::Number(_) | Self::Name(_) | Self::Value(_) => 0,
+            Self::Negative | Self::Function(_) => 1,
+            Self::Operation(_) => 2,
+        }
+    }
+}
+
+/// Refuses a text that is very long, or whose parts lie very deep in each other.
+fn check_extent(text: &str) -> Result<(), ExpressionError> {
+    let refuse = |at: usize, reason: String| {
+        Err(ExpressionError {
+            span: at..(at + 1).min(text.len()),
+            reason,
+        })
+    };
+    if text.len() > LONGEST {
+        let count = text.len();
+        return refuse(
+            0,
+            format!("it has {count} letters, expected {LONGEST} at most"),
+        );
+    }
+    // Signs and powers that are open in each bracket that is open; a value stands before what joins it to another.
+    let (mut open, mut depth, mut after_value) = (vec![0], 0, false);
+    for (at, letter) in text.char_indices().filter(|(_, c)| !c.is_whitespace()) {
+        let own = open.len() - 1;
+        match letter {
+            '(' => {
+                open.push(0);
+                depth += 1;
+            }
+            ')' if own > 0 => depth -= open.pop().unwrap_or(0) + 1,
+            '^' => {
+                open[own] += 1;
+                depth += 1;
+            }
+            '-' if !after_value => {
+                open[own] += 1;
+                depth += 1;
+            }
+            '+' | '-' | '*' | '/' | '<' | '>' | ',' => depth -= std::mem::take(&mut open[own]),
+            _ => {}
+        }
+        if depth > DEEPEST {
+            return refuse(
+                at,
+                format!(
+                    "its brackets, signs and powers lie more than {DEEPEST} deep in each other"
+                ),
+            );
+        }
+        after_value = letter == ')' || letter == '.' || letter == '_' || letter.is_alphanumeric();
+    }
+    Ok(())
+}
+
+/// Refuses what would hold very many values while it is evaluated.
+fn check_waiting(steps: &[Step]) -> Result<(), ExpressionError> {
+    let mut count = 0;
+    for step in steps {
+        count = count + 1 - step.kind.taken();
+        if count > WAITING {
+            return Err(ExpressionError {
+                span: step.span.clone(),
+                reason: format!(
+                    "more than {WAITING} values wait here for those behind them, expected fewer: put the innermost part first"
+                ),
+            });
+        }
+    }
+    Ok(())
 }
 
 type Input<'a> = LocatingSlice<&'a str>;
 
-fn whole(input: &mut Input<'_>) -> ModalResult<Node> {
+fn whole(input: &mut Input<'_>) -> ModalResult<Part> {
     delimited(multispace0, sum, multispace0).parse_next(input)
 }
 
-fn joined(operation: Operation, a: Node, b: Node) -> Node {
-    Node {
-        span: a.span.start..b.span.end,
-        kind: Kind::Operation(operation, Box::new([a, b])),
-    }
+fn span_of(part: &Part) -> Range<usize> {
+    part.last().map_or(0..0, |step| step.span.clone())
 }
 
-fn sum(input: &mut Input<'_>) -> ModalResult<Node> {
+fn joined(operation: Operation, mut a: Part, b: Part) -> Part {
+    let span = span_of(&a).start..span_of(&b).end;
+    a.extend(b);
+    a.push(Step {
+        span,
+        kind: Kind::Operation(operation),
+    });
+    a
+}
+
+/// A part whose own step is about these bytes.
+fn spanning(span: Range<usize>, mut part: Part) -> Part {
+    if let Some(own) = part.last_mut() {
+        own.span = span;
+    }
+    part
+}
+
+fn sum(input: &mut Input<'_>) -> ModalResult<Part> {
     let minus = literal("-").span();
     expression(delimited(multispace0, operand, multispace0))
         .prefix(delimited(multispace0, minus, multispace0).map(|_| Prefix(8, negative)))
@@ -224,14 +365,15 @@ fn sum(input: &mut Input<'_>) -> ModalResult<Node> {
         .parse_next(input)
 }
 
-fn negative(_: &mut Input<'_>, of: Node) -> ModalResult<Node> {
-    Ok(Node {
-        span: of.span.clone(),
-        kind: Kind::Negative(Box::new(of)),
-    })
+fn negative(_: &mut Input<'_>, mut of: Part) -> ModalResult<Part> {
+    of.push(Step {
+        span: span_of(&of),
+        kind: Kind::Negative,
+    });
+    Ok(of)
 }
 
-fn infix<'a>(input: &mut Input<'a>) -> ModalResult<Infix<Input<'a>, Node, ErrMode<ContextError>>> {
+fn infix<'a>(input: &mut Input<'a>) -> ModalResult<Infix<Input<'a>, Part, ErrMode<ContextError>>> {
     let rule = match any.parse_next(input)? {
         '<' => Left(3, |_, a, b| Ok(joined(Operation::Less, a, b))),
         '>' => Left(3, |_, a, b| Ok(joined(Operation::Greater, a, b))),
@@ -245,25 +387,25 @@ fn infix<'a>(input: &mut Input<'a>) -> ModalResult<Infix<Input<'a>, Node, ErrMod
     Ok(rule)
 }
 
-fn operand(input: &mut Input<'_>) -> ModalResult<Node> {
+fn operand(input: &mut Input<'_>) -> ModalResult<Part> {
     alt((bracket, number, named)).parse_next(input)
 }
 
-fn bracket(input: &mut Input<'_>) -> ModalResult<Node> {
+fn bracket(input: &mut Input<'_>) -> ModalResult<Part> {
     preceded("(", cut_err((sum, ")")))
         .with_span()
-        .map(|((node, _), span)| Node { span, ..node })
+        .map(|((part, _), span)| spanning(span, part))
         .parse_next(input)
 }
 
-fn number(input: &mut Input<'_>) -> ModalResult<Node> {
+fn number(input: &mut Input<'_>) -> ModalResult<Part> {
     // The library's `float` reads "inf" and "nan" too, which are names here.
     let start = take_while(1, |c: char| c.is_ascii_digit() || c == '.');
     let (value, span) = preceded(peek(start), float).with_span().parse_next(input)?;
-    Ok(Node {
+    Ok(vec![Step {
         span,
         kind: Kind::Number(value),
-    })
+    }])
 }
 
 fn name<'a>(input: &mut Input<'a>) -> ModalResult<&'a str> {
@@ -276,14 +418,14 @@ fn name<'a>(input: &mut Input<'a>) -> ModalResult<&'a str> {
         .parse_next(input)
 }
 
-fn named(input: &mut Input<'_>) -> ModalResult<Node> {
+fn named(input: &mut Input<'_>) -> ModalResult<Part> {
     let ((name, span), arguments) = (name.with_span(), opt(arguments)).parse_next(input)?;
     let Some((arguments, end)) = arguments else {
         let kind = match name {
             "pi" => Kind::Number(std::f64::consts::PI),
             name => Kind::Name(name.to_owned()),
         };
-        return Ok(Node { span, kind });
+        return Ok(vec![Step { span, kind }]);
     };
     let whole = span.start..end;
     let operation = match name {
@@ -295,169 +437,135 @@ fn named(input: &mut Input<'_>) -> ModalResult<Node> {
     let count = arguments.len();
     let mut arguments = arguments.into_iter();
     let kind = match (operation, function, arguments.next()) {
-        (None, Some(function), Some(only)) if count == 1 => {
-            Kind::Function(function, Box::new(only))
+        (None, Some(function), Some(mut only)) if count == 1 => {
+            let kind = Kind::Function(function);
+            only.push(Step { span: whole, kind });
+            return Ok(only);
         }
         (Some(operation), _, Some(first)) if count > 1 => {
-            let mut node = arguments.fold(first, |a, b| joined(operation, a, b));
-            node.span = whole;
-            return Ok(node);
+            let part = arguments.fold(first, |a, b| joined(operation, a, b));
+            return Ok(spanning(whole, part));
         }
         // Reported as a name that is not known, with its location.
         _ => Kind::Name(format!("{name}(..) of {count}")),
     };
-    Ok(Node { span: whole, kind })
+    Ok(vec![Step { span: whole, kind }])
 }
 
 /// Arguments of a function with where their bracket ends.
-fn arguments(input: &mut Input<'_>) -> ModalResult<(Vec<Node>, usize)> {
+fn arguments(input: &mut Input<'_>) -> ModalResult<(Vec<Part>, usize)> {
     let list = separated(1.., sum, ",");
     let close = preceded(multispace0, ")").span();
     preceded((multispace0, "("), cut_err((list, close)))
-        .map(|(list, close): (Vec<Node>, Range<usize>)| (list, close.end))
+        .map(|(list, close): (Vec<Part>, Range<usize>)| (list, close.end))
         .parse_next(input)
 }
 
 /// Widens what begins with a sign by the sign, which the parser hands on without its place.
-fn include_signs(node: &mut Node, text: &str) {
-    match &mut node.kind {
-        Kind::Negative(of) => {
-            include_signs(of, text);
-            let before = text
-                .get(..of.span.start)
-                .and_then(|before| before.rfind('-'));
-            node.span.start = before.unwrap_or(of.span.start);
-        }
-        Kind::Function(_, of) => include_signs(of, text),
-        Kind::Operation(_, both) => {
-            both.iter_mut().for_each(|part| include_signs(part, text));
-            node.span.start = node.span.start.min(both[0].span.start);
-        }
-        Kind::Number(_) | Kind::Name(_) | Kind::Value(_) => {}
-    }
-}
-
-fn look_up(node: &mut Node, names: &[&str]) -> Result<(), ExpressionError> {
-    match &mut node.kind {
-        Kind::Number(_) | Kind::Value(_) => Ok(()),
-        Kind::Name(name) => match names.iter().position(|known| known == name) {
-            Some(place) => {
-                node.kind = Kind::Value(place);
-                Ok(())
+fn include_signs(steps: &mut [Step], text: &str) {
+    // Where the values that wait begin.
+    let mut begins: Vec<usize> = Vec::new();
+    for step in steps {
+        let first = begins.len().saturating_sub(step.kind.taken());
+        let of_first = begins.get(first).copied();
+        match (&step.kind, of_first) {
+            (Kind::Negative, Some(begin)) => {
+                let before = text.get(..begin).and_then(|before| before.rfind('-'));
+                step.span.start = before.unwrap_or(begin);
             }
-            None => {
-                let functions: Vec<&str> = FUNCTIONS.iter().map(|f| f.name).collect();
-                let reason = if name.contains('(') {
-                    format!(
-                        "there is no function {name}, expected min(a, b), max(a, b) or one of {}, of one argument",
-                        functions.join(", ")
-                    )
-                } else {
-                    format!(
-                        "there is no `{name}` here, expected one of {}",
-                        names.join(", ")
-                    )
-                };
-                Err(ExpressionError {
-                    span: node.span.clone(),
-                    reason,
-                })
-            }
-        },
-        Kind::Negative(of) | Kind::Function(_, of) => look_up(of, names),
-        Kind::Operation(_, both) => both.iter_mut().try_for_each(|node| look_up(node, names)),
+            (Kind::Operation(_), Some(begin)) => step.span.start = step.span.start.min(begin),
+            _ => {}
+        }
+        begins.truncate(first);
+        begins.push(step.span.start);
     }
 }
 
-fn value(node: &Node, values: &[f64]) -> f64 {
-    match &node.kind {
-        Kind::Number(number) => *number,
-        Kind::Value(place) => values[*place],
-        Kind::Negative(of) => -value(of, values),
-        Kind::Function(function, of) => (function.law)(value(of, values)),
-        Kind::Operation(operation, both) => {
-            let [a, b] = &**both;
-            operation.apply(value(a, values), value(b, values))
-        }
-        // Looked up as the expression was read.
-        Kind::Name(_) => f64::NAN,
+fn look_up(step: &mut Step, names: &[&str]) -> Result<(), ExpressionError> {
+    let Kind::Name(name) = &step.kind else {
+        return Ok(());
+    };
+    if let Some(place) = names.iter().position(|known| known == name) {
+        step.kind = Kind::Value(place);
+        return Ok(());
     }
-}
-
-fn uses(node: &Node, place: usize) -> bool {
-    match &node.kind {
-        Kind::Value(own) => *own == place,
-        Kind::Negative(of) | Kind::Function(_, of) => uses(of, place),
-        Kind::Operation(_, both) => both.iter().any(|node| uses(node, place)),
-        Kind::Number(_) | Kind::Name(_) => false,
-    }
-}
-
-fn finite(node: &Node, values: &[f64]) -> Result<f64, ExpressionError> {
-    match &node.kind {
-        Kind::Number(_) | Kind::Value(_) | Kind::Name(_) => {}
-        Kind::Negative(of) | Kind::Function(_, of) => {
-            finite(of, values)?;
-        }
-        Kind::Operation(_, both) => {
-            for part in &**both {
-                finite(part, values)?;
-            }
-        }
-    }
-    let found = value(node, values);
-    if found.is_finite() {
-        return Ok(found);
-    }
+    let functions: Vec<&str> = FUNCTIONS.iter().map(|f| f.name).collect();
+    let reason = if name.contains('(') {
+        format!(
+            "there is no function {name}, expected min(a, b), max(a, b) or one of {}, of one argument",
+            functions.join(", ")
+        )
+    } else {
+        format!(
+            "there is no `{name}` here, expected one of {}",
+            names.join(", ")
+        )
+    };
     Err(ExpressionError {
-        span: node.span.clone(),
-        reason: "it is not finite".to_owned(),
+        span: step.span.clone(),
+        reason,
     })
 }
 
-fn unit(node: &Node, units: &[Option<Unit>]) -> Result<InferredUnit, ExpressionError> {
+/// The unit of an expression's value.
+fn unit(steps: &[Step], units: &[Option<Unit>]) -> Result<InferredUnit, ExpressionError> {
+    let mut waiting: Vec<InferredUnit> = Vec::new();
+    let mut exponent = None;
+    for step in steps {
+        let first = waiting.len().saturating_sub(step.kind.taken());
+        let found = unit_of(step, &waiting[first..], exponent, units)?;
+        waiting.truncate(first);
+        waiting.push(found);
+        exponent = match step.kind {
+            Kind::Number(number) => Some(number),
+            _ => None,
+        };
+    }
+    Ok(waiting.pop().unwrap_or(InferredUnit::Nothing))
+}
+
+/// The unit of a step's value by those of what it takes, and the number before it, if that is one as written.
+fn unit_of(
+    step: &Step,
+    taken: &[InferredUnit],
+    exponent: Option<f64>,
+    units: &[Option<Unit>],
+) -> Result<InferredUnit, ExpressionError> {
     let refuse = |reason: String| ExpressionError {
-        span: node.span.clone(),
+        span: step.span.clone(),
         reason,
     };
-    Ok(match &node.kind {
-        Kind::Number(_) => InferredUnit::Number,
-        Kind::Name(_) => InferredUnit::Nothing,
-        Kind::Value(place) => units[*place].map_or(InferredUnit::Nothing, InferredUnit::Unit),
-        Kind::Negative(of) => unit(of, units)?,
-        Kind::Function(function, of) => match unit(of, units)? {
-            InferredUnit::Unit(argument) => {
-                InferredUnit::Unit((function.unit)(argument).ok_or_else(|| {
-                    refuse(format!(
-                        "{} of something in {argument}, expected a number without a unit",
-                        function.name
-                    ))
-                })?)
-            }
-            inferred => inferred,
-        },
-        Kind::Operation(operation, both) => {
-            let [a, b] = &**both;
-            let inferred = [unit(a, units)?, unit(b, units)?];
-            match (operation, inferred) {
-                (Operation::Multiply | Operation::Divide, [a, b]) => product(*operation, a, b),
-                (Operation::Power, [InferredUnit::Unit(base), _]) => match b.kind {
-                    Kind::Number(exponent) => InferredUnit::Unit(base.power(exponent)),
-                    _ if base == Unit::ONE => InferredUnit::Unit(base),
-                    _ => InferredUnit::Nothing,
-                },
-                (Operation::Power, [base, _]) => base,
-                (_, [InferredUnit::Unit(a), InferredUnit::Unit(b)]) if a != b => {
-                    return Err(refuse(format!("{a} beside {b}")));
-                }
-                (Operation::Less | Operation::Greater, _) => InferredUnit::Unit(Unit::ONE),
-                (_, [InferredUnit::Unit(unit), _] | [_, InferredUnit::Unit(unit)]) => {
-                    InferredUnit::Unit(unit)
-                }
-                (_, [InferredUnit::Number, InferredUnit::Number]) => InferredUnit::Number,
-                _ => InferredUnit::Nothing,
-            }
+    Ok(match (&step.kind, taken) {
+        (Kind::Number(_), _) => InferredUnit::Number,
+        (Kind::Value(place), _) => units[*place].map_or(InferredUnit::Nothing, InferredUnit::Unit),
+        (Kind::Function(function), [InferredUnit::Unit(argument)]) => {
+            InferredUnit::Unit((function.unit)(*argument).ok_or_else(|| {
+                refuse(format!(
+                    "{} of something in {argument}, expected a number without a unit",
+                    function.name
+                ))
+            })?)
         }
+        (Kind::Negative | Kind::Function(_), [inferred]) => *inferred,
+        (Kind::Operation(operation), &[a, b]) => match (operation, [a, b]) {
+            (Operation::Multiply | Operation::Divide, [a, b]) => product(*operation, a, b),
+            (Operation::Power, [InferredUnit::Unit(base), _]) => match exponent {
+                Some(exponent) => InferredUnit::Unit(base.power(exponent)),
+                None if base == Unit::ONE => InferredUnit::Unit(base),
+                None => InferredUnit::Nothing,
+            },
+            (Operation::Power, [base, _]) => base,
+            (_, [InferredUnit::Unit(a), InferredUnit::Unit(b)]) if a != b => {
+                return Err(refuse(format!("{a} beside {b}")));
+            }
+            (Operation::Less | Operation::Greater, _) => InferredUnit::Unit(Unit::ONE),
+            (_, [InferredUnit::Unit(unit), _] | [_, InferredUnit::Unit(unit)]) => {
+                InferredUnit::Unit(unit)
+            }
+            (_, [InferredUnit::Number, InferredUnit::Number]) => InferredUnit::Number,
+            _ => InferredUnit::Nothing,
+        },
+        _ => InferredUnit::Nothing,
     })
 }
 
@@ -564,6 +672,46 @@ mod tests {
             unknown.check_units(&units, Unit::read("N").unwrap()),
             Ok(())
         );
+    }
+
+    #[test]
+    fn very_long_and_very_deep_texts_are_refused_and_what_is_read_is_evaluated() {
+        let refusal = |text: &str| Expression::read(text, &NAMES).unwrap_err().reason;
+        let deep = |open: &str, count: usize, close: &str| {
+            format!("{}x{}", open.repeat(count), close.repeat(count))
+        };
+        for (open, close) in [
+            ("(", ")"),
+            ("-", ""),
+            ("- ", " "),
+            ("2^", ""),
+            ("2^-", ""),
+            ("sin(", ")"),
+            ("max(1,", ")"),
+            ("1+(", ")"),
+            ("-(", ")"),
+        ] {
+            for count in [400, 5300, 50_000] {
+                let said = refusal(&deep(open, count, close));
+                let expected = said.contains("deep in each other") || said.contains("letters");
+                assert!(expected, "{open}: {said}");
+            }
+            let fits = Expression::read(&deep(open, 40, close), &NAMES);
+            assert!(fits.is_ok(), "{open}: {fits:?}");
+        }
+        // Open brackets alone, closing ones alone: no expression, and no more than that.
+        assert!(refusal(&"(".repeat(90)).contains("expected a number"));
+        assert!(refusal(&")".repeat(5000)).contains("expected a number"));
+        // What stands side by side lies in nothing.
+        let terms = 2400;
+        let sum = format!("x{}", " - v".repeat(terms));
+        assert_eq!(at(&sum), 0.5 + 3.0 * f64::from(terms as u32));
+        assert!(refusal(&format!("x{}", "+x".repeat(50_000))).contains("letters"));
+        let side_by_side = "-x^2 + ".repeat(300) + "(x)";
+        assert_eq!(at(&side_by_side), 0.5 - 300.0 * 0.25);
+        // Values that wait: 1+2*(1+2*(..)).
+        let waiting = deep("1+2*(", 60, ")");
+        assert!(refusal(&waiting).contains("wait"));
     }
 
     #[test]
