@@ -35,6 +35,7 @@ mod functions;
 mod help;
 mod import;
 mod imports;
+mod inert;
 mod laboratory;
 mod layers;
 mod manual;

@@ -297,30 +297,31 @@ impl Drop for Cluster {
     }
 }
 
-/// A cluster on a free port, and the engine's name of it.
-fn at_address(python: &Path) -> (Cluster, String) {
+/// A cluster on a free port, with certificates or without, and the engine's name of it.
+fn at_address(python: &Path, certificates: &[&str]) -> (Cluster, String) {
     // Free now; the scheduler takes it at once.
     let port = TcpListener::bind("127.0.0.1:0")
         .unwrap()
         .local_addr()
         .unwrap()
         .port();
-    let address = format!("tcp://127.0.0.1:{port}");
+    let protocol = ["tcp", "tls"][usize::from(!certificates.is_empty())];
+    let address = format!("{protocol}://127.0.0.1:{port}");
     let start = |words: &[&str]| {
         let mut command = Command::new(python);
         command.args(["-m", "dask"]).args(words);
+        command.args(["--protocol", protocol, "--host", "127.0.0.1"]);
+        command.args(certificates);
         command.stdout(Stdio::null()).stderr(Stdio::null());
         command.spawn().unwrap()
     };
     let text = port.to_string();
     let scheduler = start(&[
         "scheduler",
-        "--host",
-        "127.0.0.1",
         "--port",
         &text,
         "--dashboard-address",
-        ":0",
+        "127.0.0.1:0",
     ]);
     let worker = start(&[
         "worker",
@@ -328,9 +329,80 @@ fn at_address(python: &Path) -> (Cluster, String) {
         "--nthreads",
         "1",
         "--no-nanny",
-        "--no-dashboard",
+        "--dashboard-address",
+        "127.0.0.1:0",
     ]);
     (Cluster(vec![scheduler, worker]), format!("dask={address}"))
+}
+
+#[test]
+fn a_cluster_with_certificates_takes_tasks_of_those_alone_who_have_one() {
+    let Some(python) = python_with("distributed") else {
+        return;
+    };
+    let bench = plate();
+    // As the page for clusters has it.
+    let page = std::fs::read_to_string(project("docs/CLUSTER.md")).unwrap();
+    let commands = page.lines().filter(|line| line.starts_with("    openssl "));
+    let commands: Vec<&str> = commands.collect();
+    assert_eq!(commands.len(), 3);
+    let mut shell = Command::new("sh");
+    shell.args(["-e", "-c", &commands.join("\n")]);
+    shell.current_dir(bench.path("")).stderr(Stdio::null());
+    match shell.status() {
+        Ok(status) if status.success() => (),
+        _ => return skipped("no openssl"),
+    }
+    let [ca, cert, key] = ["ca.pem", "dask.pem", "dask.key"].map(|name| bench.path(name));
+    let [ca, cert, key] = [&ca, &cert, &key].map(|path| path.to_str().unwrap());
+    let files = ["--tls-ca-file", ca, "--tls-cert", cert, "--tls-key", key];
+    let (_cluster, address) = at_address(&python, &files);
+    let words = [
+        "vary",
+        "scenario.toml",
+        "--set",
+        FORCES,
+        "--quiet",
+        "--engine",
+        &address,
+        "--python",
+        python.to_str().unwrap(),
+        "--out",
+    ];
+    let with = |out: &str, variables: &[(&str, &str)]| {
+        bench.idc(&[&words[..], &[out]].concat(), variables)
+    };
+    let own = [
+        ("DASK_DISTRIBUTED__COMM__TLS__CA_FILE", ca),
+        ("DASK_DISTRIBUTED__COMM__TLS__CLIENT__CERT", cert),
+        ("DASK_DISTRIBUTED__COMM__TLS__CLIENT__KEY", key),
+    ];
+    let done = with("closed", &own);
+    assert_eq!((done.code, done.err.as_str()), (0, ""));
+    let refused = with("none", &[]);
+    assert_eq!(refused.code, 2);
+    let message = refused.only_line("error");
+    assert!(message.contains("no certificate here"), "{message}");
+    // One of another's making.
+    let make = format!(
+        "openssl req -x509 -newkey rsa:2048 -nodes -subj /CN=other -keyout {key}.other -out {cert}.other"
+    );
+    let mut shell = Command::new("sh");
+    assert!(
+        shell
+            .args(["-c", &make])
+            .stderr(Stdio::null())
+            .status()
+            .unwrap()
+            .success()
+    );
+    let [other_cert, other_key] = [cert, key].map(|name| format!("{name}.other"));
+    let other = [
+        own[0],
+        (own[1].0, other_cert.as_str()),
+        (own[2].0, other_key.as_str()),
+    ];
+    assert_eq!(with("other", &other).code, 2);
 }
 
 #[test]
@@ -373,7 +445,7 @@ fn dask_and_snakemake_make_the_same_table_with_and_without_a_shared_folder() {
         );
     }
     if let Some(python) = python_with("distributed") {
-        let (cluster, address) = at_address(&python);
+        let (cluster, address) = at_address(&python, &[]);
         let python = python.display().to_string();
         let dask = ["--quiet", "--engine", &address, "--python", &python];
         let outcome = vary(&bench, "address", &dask);

@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use super::error::AppError;
 use super::progress;
+use super::terminal::say_aside;
 use crate::advice::{Advice, Effort, Remedy, RunOptions, RunOutcome, Trial, advise};
 use crate::cell::{Cell, CellError};
 use crate::run::{RunError, run_cell};
@@ -75,9 +76,9 @@ impl AdviceArguments {
         let tell = |what: &'static str| {
             let words = format!("looking for what would make it possible: {what}");
             if plain && begin.elapsed() > SHORT {
-                eprintln!("{words}");
+                say_aside(&words);
             }
-            line.set_message(words);
+            progress::words(&line, &words);
         };
         let keep_on = || begin.elapsed() < patience;
         let trial = Trial::new(

@@ -9,6 +9,7 @@ use super::error::{AppError, ExitCode};
 use super::files::{DIAGNOSIS, OverwritePolicy, SAMPLES, is_same, prepare_file};
 use super::output::say;
 use super::report::{read_json, read_samples};
+use super::terminal::shown_path;
 use crate::document::{Style, html, text};
 use crate::recording::Recording;
 use crate::recording::atomic::write_text;
@@ -73,7 +74,7 @@ pub(super) fn run(arguments: &CompareArguments) -> Result<ExitCode, AppError> {
     if !arguments.quiet {
         say(&text(&compared.document(), Style::Plain))?;
         if let Some(out) = &arguments.out {
-            say(&format!("\nwritten to {}\n", out.display()))?;
+            say(&format!("\nwritten to {}\n", shown_path(out)))?;
         }
     }
     Ok(ExitCode::Done)

@@ -11,14 +11,15 @@
 use std::path::Path;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
-use anstream::eprintln;
 use anstyle::{AnsiColor, Style};
 
 use super::advice::as_json as as_json_list;
 use super::error::{AppError, ExitCode};
+use super::terminal::{say_aside, say_aside_styled, shown_path};
 use crate::advice::Advice;
 use crate::cell::CellError;
 use crate::design::DesignError;
+use crate::document::printable;
 use crate::keys::error::Location;
 use crate::metrics::MetricsError;
 use crate::run::RunError;
@@ -41,13 +42,23 @@ pub fn complain(error: &AppError, json: bool) {
     let code = error.exit_code();
     let location = location(error);
     if json {
-        eprintln!("{}", as_json(error, code, location.as_ref()));
+        say_aside(&as_json(error, code, location.as_ref()).to_string());
         return;
     }
-    eprintln!("{WORD}error{WORD:#}: {error}");
+    let sentence = error.to_string();
+    say_aside_styled(&format!("{WORD}error{WORD:#}: {}\n", printable(&sentence)));
     if let Some(excerpt) = location.as_ref().and_then(excerpt) {
-        eprintln!("{excerpt}");
+        say_aside_styled(&format!("{excerpt}\n"));
     }
+}
+
+/// Refuses arguments, or shows the help that they ask for, and ends the program. What was typed may be a name that a shell took from a folder.
+pub fn refuse_arguments(error: &clap::Error) -> ! {
+    if !error.use_stderr() {
+        error.exit();
+    }
+    say_aside_styled(&error.render().ansi().to_string());
+    std::process::exit(error.exit_code());
 }
 
 /// Where in a file the error is.
@@ -102,9 +113,11 @@ fn location_of_run(error: &RunError) -> Option<Location> {
 
 /// The line with carets below what is meant.
 fn excerpt(location: &Location) -> Option<String> {
+    // A scenario from elsewhere may name any file of this machine, whose lines are not to be shown.
+    location.file.extension().filter(|end| *end == "toml")?;
     let (line, _) = location.position?;
     let excerpt = location.excerpt.as_ref()?;
-    let file = location.file.display().to_string();
+    let file = shown_path(&location.file);
     let snippet = Snippet::source(&excerpt.line)
         .line_start(line as usize)
         .path(file)

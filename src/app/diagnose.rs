@@ -27,6 +27,7 @@ use super::files::{OverwritePolicy, output_folder};
 use super::interrupt::Interruptible;
 use super::output::say;
 use super::progress::StagedLine;
+use super::terminal::{say_aside, shown_path};
 use crate::diagnosis::effort::EffortLimit;
 use crate::diagnosis::search::progress::Progress;
 use crate::plant::LawText;
@@ -137,7 +138,7 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
         if arguments.json {
             say(&answer.text()?)?;
         } else if !arguments.quiet {
-            say(&format!("{} holds a diagnosis already\n", out.display()))?;
+            say(&format!("{} holds a diagnosis already\n", shown_path(&out)))?;
         }
         return Ok(ExitCode::Done);
     }
@@ -157,7 +158,7 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
         let (words, behind) = stages.shown(progress);
         line.tell(words, behind);
         if arguments.verbose {
-            eprintln!("{progress}");
+            say_aside(&progress.to_string());
         }
     });
     line.end();
@@ -168,7 +169,7 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
         say(&finished.account)?;
         say(&format!(
             "\nwritten to {}: {}\n",
-            out.display(),
+            shown_path(&out),
             finished.names.join(", ")
         ))?;
     }

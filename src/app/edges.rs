@@ -12,6 +12,7 @@ use super::error::{AppError, ExitCode};
 use super::files::{OverwritePolicy, is_same, prepare_file};
 use super::output::say;
 use super::progress;
+use super::terminal::shown_path;
 use crate::recording::atomic::write_text;
 use crate::workpiece::{
     EdgeCurve, EdgeList, EdgeSearch, MeshFault, PartFile, TriangleMesh, WorkpieceError, list_edges,
@@ -89,7 +90,7 @@ pub(super) fn list(arguments: &EdgesArguments) -> Result<ExitCode, AppError> {
         list.table() + &notes.collect::<String>()
     })?;
     if let (Some(out), false) = (&arguments.out, arguments.json) {
-        say(&format!("page written to {}\n", out.display()))?;
+        say(&format!("page written to {}\n", shown_path(out)))?;
     }
     Ok(ExitCode::Done)
 }
@@ -108,7 +109,7 @@ fn refused(
         if !arguments.json {
             say(&format!(
                 "page of the faulty edges written to {}\n",
-                out.display()
+                shown_path(out)
             ))?;
         }
     }

@@ -12,6 +12,7 @@ use clap::Args;
 use super::error::{AppError, ExitCode};
 use super::files::{OverwritePolicy, prepare_file};
 use super::output::say;
+use super::terminal::shown_path;
 use crate::demonstration::{self as scene, ArmStage, Stage, arm_effects};
 use crate::document::{Document, Style, text};
 use crate::effects::{Effect, NUMBER_OFF, NUMBERS_OFF, kinds};
@@ -134,7 +135,7 @@ fn explain(
     if arguments.json {
         say(&format!("{json}\n"))?;
     } else if let (Some(file), false) = (&arguments.out, arguments.quiet) {
-        say(&format!("written to {}\n", file.display()))?;
+        say(&format!("written to {}\n", shown_path(file)))?;
     } else if !arguments.quiet {
         say(&text(page, Style::Plain))?;
         say(&format!(

@@ -7,6 +7,7 @@ use clap::Args;
 use super::error::AppError;
 use super::interrupt::Interruptible;
 use super::progress;
+use super::terminal::say_aside;
 use crate::tasks::{Dask, Engine, Plan, Store, Task, TaskError, TaskMessage, dask, local};
 
 /// The plan of a sweep or a fleet, in its folder.
@@ -15,7 +16,7 @@ pub(super) const PLAN: &str = "plan.jsonl";
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Engine")]
 pub(super) struct EngineArguments {
-    /// Who does the tasks: `local`, threads of this program; `dask=local:N`, as many workers of Dask on this machine; `dask=ADDRESS`, those of a scheduler, as in dask=tcp://10.0.0.1:8786.
+    /// Who does the tasks: `local`, threads of this program; `dask=local:N`, as many workers of Dask on this machine; `dask=ADDRESS`, those of a scheduler, as in dask=tls://10.0.0.1:8786.
     #[arg(long, default_value = "local", value_parser = engine)]
     engine: Engine,
     /// Tasks at a time of `local` [default: as many as there are processors].
@@ -64,8 +65,8 @@ impl EngineArguments {
                 bar.set_position(done as u64);
             }
             TaskMessage::Words(words) if tasks.quiet => drop(words),
-            TaskMessage::Words(words) if bar.is_hidden() => eprintln!("{words}"),
-            TaskMessage::Words(words) => bar.println(words),
+            TaskMessage::Words(words) if bar.is_hidden() => say_aside(&words),
+            TaskMessage::Words(words) => progress::above(&bar, &words),
         };
         let done = match &self.engine {
             Engine::Local => {

@@ -444,6 +444,17 @@ impl From<DesignError> for AppError {
 }
 
 impl AppError {
+    /// The same of a value that stands in a row of a table in place of a flag.
+    pub(super) fn in_row(self, row: &str, key: &str, value: &str) -> Self {
+        match self {
+            Self::Set { source, .. } => Self::Set {
+                flags: format!("{row}: {key} = {value}"),
+                source,
+            },
+            other => other,
+        }
+    }
+
     /// Exit code that goes with it.
     pub fn exit_code(&self) -> ExitCode {
         match self {

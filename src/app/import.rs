@@ -14,6 +14,7 @@ use super::files::{OverwritePolicy, is_same, prepare_file};
 use super::interrupt::Interruptible;
 use super::output::say;
 use super::progress;
+use super::terminal::shown_path;
 use crate::document::{self, Style};
 use crate::import::findings::same_data;
 use crate::import::{ImportError, ImportMap, Imported, LogNote, import, load_map};
@@ -256,7 +257,7 @@ fn text(map: &ImportMap, jobs: &[Job], copies: &[Copies]) -> String {
         document::wrapped("", &words)
     });
     let outs = jobs.iter().flat_map(|job| &job.outs);
-    let outs = outs.map(|(out, _)| format!("written to {}\n", out.display()));
+    let outs = outs.map(|(out, _)| format!("written to {}\n", shown_path(out)));
     jobs_text.chain(copies).chain(outs).collect()
 }
 

@@ -5,6 +5,9 @@ use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
+#[cfg(unix)]
+use super::terminal::{clear_line, say_aside};
+
 /// Words on the command that goes on; none where none are needed.
 static TELL: Mutex<Option<Tell>> = Mutex::new(None);
 
@@ -95,25 +98,21 @@ pub fn listen(_json: bool) {}
 
 #[cfg(unix)]
 fn report(json: bool, code: i32) {
-    use std::io::{IsTerminal as _, Write as _};
+    use std::io::IsTerminal as _;
     let tell = TELL.lock().unwrap_or_else(PoisonError::into_inner);
     let Some(text) = tell.as_ref().map(|tell| tell()) else {
         return;
     };
-    let mut stderr = std::io::stderr();
     let line = if json {
         let error =
             serde_json::json!({"message": format!("interrupted: {text}"), "exit_code": code});
         serde_json::json!({ "error": error }).to_string()
     } else {
         // A bar stands in the line.
-        let fresh = if stderr.is_terminal() {
-            "\r\x1b[2K"
-        } else {
-            ""
-        };
-        format!("{fresh}interrupted: {text}")
+        if std::io::stderr().is_terminal() {
+            clear_line();
+        }
+        format!("interrupted: {text}")
     };
-    // Nobody may read it any more; `eprintln!` would then end this thread, and with it nothing would end the program.
-    drop(writeln!(stderr, "{line}"));
+    say_aside(&line);
 }

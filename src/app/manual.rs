@@ -7,6 +7,7 @@ use clap::{Args, Command};
 use super::error::{AppError, ExitCode};
 use super::files::{OverwritePolicy, prepare_file};
 use super::output::say;
+use super::terminal::shown_path;
 use crate::recording::atomic::write_text;
 
 /// For the help.
@@ -83,7 +84,7 @@ pub(super) fn man(arguments: &ManArguments, mut program: Command) -> Result<Exit
     say(&format!(
         "{} pages written to {}\n",
         pages.len(),
-        folder.display()
+        shown_path(folder)
     ))?;
     Ok(ExitCode::Done)
 }

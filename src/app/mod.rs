@@ -35,12 +35,13 @@ mod schema;
 mod space;
 mod streaming;
 mod task;
+mod terminal;
 mod vary;
 mod view;
 mod viewer;
 
 pub use cli::{Cli, execute};
-pub use complaint::{complain, wants_json};
+pub use complaint::{complain, refuse_arguments, wants_json};
 pub use design::ScenarioEvaluator;
 pub use edge_course::edge_course;
 pub use error::{AppError, ExitCode};

@@ -1,20 +1,17 @@
 //! Text on standard output.
 
-use std::io::{ErrorKind, Write};
-
 use super::error::AppError;
 use super::files::OutputFolder;
+use super::terminal::{print, shown_path};
 
-/// Prints a text. A reader that has seen enough, such as `head`, is no error.
+/// Prints a text.
 pub(super) fn say(text: &str) -> Result<(), AppError> {
-    let mut output = std::io::stdout().lock();
-    match output
-        .write_all(text.as_bytes())
-        .and_then(|()| output.flush())
-    {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(AppError::Print(error)),
-        _ => Ok(()),
-    }
+    print(text, false).map_err(AppError::Print)
+}
+
+/// Prints a document that may be coloured.
+pub(super) fn say_styled(text: &str) -> Result<(), AppError> {
+    print(text, true).map_err(AppError::Print)
 }
 
 /// Prints what the user asked to see.
@@ -28,10 +25,10 @@ pub(super) fn show(
     if json {
         say(&format!("{document}\n"))?;
     } else if !quiet {
-        say(table)?;
+        say_styled(table)?;
         say(&format!(
             "written to {}: {}\n",
-            folder.path().display(),
+            shown_path(folder.path()),
             names.join(", ")
         ))?;
     }

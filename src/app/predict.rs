@@ -11,6 +11,7 @@ use super::error::{AppError, ExitCode};
 use super::files::{OverwritePolicy, is_same, prepare_file};
 use super::output::say;
 use super::progress;
+use super::terminal::shown_path;
 use crate::case::{
     check_finite, predict_arm, predict_flange_run, predict_postures, predict_table, predicted_by,
     read_rig, shown_columns,
@@ -243,7 +244,11 @@ fn of_flange(
     for sentence in &made.notes {
         let _ = writeln!(said, "note: {sentence}.");
     }
-    let _ = writeln!(said, "{file}, predicted with 90 % interval; recorded");
+    let _ = writeln!(
+        said,
+        "{}, predicted with 90 % interval; recorded",
+        shown_path(inputs)
+    );
     let run = &made.run;
     let spread = run.sliding_spread_n;
     let results = [
@@ -265,7 +270,7 @@ fn of_flange(
         );
     }
     let samples = made.time.len();
-    let _ = writeln!(said, "{samples} samples written to {}", out.display());
+    let _ = writeln!(said, "{samples} samples written to {}", shown_path(&out));
     let force = COLUMNS[Channel::Force as usize];
     Ok(Made {
         csv: columns_text(&made.time, &[(force, &made.force)])?,
@@ -320,7 +325,7 @@ fn of_postures(file: &Path, inputs: &Path, out: PathBuf) -> Result<Made, AppErro
         );
     }
     let postures = counted(predicted.postures, "posture");
-    let _ = writeln!(said, "{postures} written to {}", out.display());
+    let _ = writeln!(said, "{postures} written to {}", shown_path(&out));
     let rms: BTreeMap<&str, f64> = predicted.off.into_iter().collect();
     Ok(Made {
         document: serde_json::json!({
@@ -360,7 +365,7 @@ fn text(out: &Path, samples: usize, notes: &[String], off: &[Error<'_>]) -> Stri
             significant(factor * rms * noise, 3)
         );
     }
-    let _ = writeln!(text, "{samples} samples written to {}", out.display());
+    let _ = writeln!(text, "{samples} samples written to {}", shown_path(&out));
     text
 }
 

@@ -5,6 +5,9 @@ use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
+use super::terminal::say_aside;
+use crate::document::printable;
+
 /// Nothing is drawn of what takes less.
 const PATIENCE: Duration = Duration::from_millis(700);
 /// Between two turns of a spinner.
@@ -51,7 +54,7 @@ pub(super) fn places(count: usize, hidden: bool) -> ProgressBar {
 pub(super) fn runs(count: usize, parts: usize, hidden: bool) -> ProgressBar {
     let template = format!("{{msg}} of {count} runs {{wide_bar}} {{eta}} left");
     let bar = of((count * parts) as u64, &template, hidden);
-    bar.set_message("0");
+    words(&bar, "0");
     bar
 }
 
@@ -60,7 +63,7 @@ pub(super) fn spinner(first: &str, hidden: bool) -> ProgressBar {
     let spinner = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
     let style = ProgressStyle::with_template("{spinner} {elapsed}  {wide_msg}");
     spinner.set_style(style.unwrap_or_else(|_| ProgressStyle::default_spinner()));
-    spinner.set_message(first.to_owned());
+    words(&spinner, first);
     show_later(&spinner, hidden);
     spinner
 }
@@ -88,7 +91,7 @@ impl StagedLine {
         let style = ProgressStyle::with_template("{spinner} {elapsed}{left}  {wide_msg}");
         let style = style.unwrap_or_else(|_| ProgressStyle::default_spinner());
         line.set_style(style.with_key("left", left));
-        line.set_message(first.to_owned());
+        words(&line, first);
         show_later(&line, hidden);
         Self {
             line,
@@ -107,11 +110,11 @@ impl StagedLine {
             let stage = words.split(',').next().unwrap_or_default();
             let mut printed = printed.lock().unwrap_or_else(PoisonError::into_inner);
             if *printed != stage {
-                eprintln!("{stage}");
+                say_aside(stage);
                 stage.clone_into(&mut printed);
             }
         }
-        self.line.set_message(words);
+        self::words(&self.line, &words);
     }
 
     /// Takes it away.
@@ -137,13 +140,23 @@ fn left(elapsed: Duration, mark: Option<(Duration, f64)>) -> String {
 /// Prints a line where no bar is drawn, as into a file or a pipe.
 pub(super) fn without_bar(words: &str, hidden: bool) {
     if !hidden && !is_terminal() {
-        eprintln!("{words}");
+        say_aside(words);
     }
 }
 
 fn is_terminal() -> bool {
     use std::io::IsTerminal as _;
     std::io::stderr().is_terminal()
+}
+
+/// Shows words beside a bar, as a line of a terminal may have them.
+pub(super) fn words(bar: &ProgressBar, words: &str) {
+    bar.set_message(printable(words).into_owned());
+}
+
+/// Prints a line above a bar.
+pub(super) fn above(bar: &ProgressBar, line: &str) {
+    bar.println(printable(line));
 }
 
 /// Tells a bar how much is done.

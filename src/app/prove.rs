@@ -11,6 +11,7 @@ use super::files::{OutputFolder, OverwritePolicy, prepare_file};
 use super::interrupt::Interruptible;
 use super::output::say;
 use super::progress;
+use super::terminal::{say_aside, shown_path};
 use crate::document::{Style, text};
 use crate::laboratory::{Recipe, shipped};
 use crate::proof::{
@@ -259,9 +260,9 @@ fn run_sweep(arguments: &ProveArguments) -> Result<ExitCode, AppError> {
         progress::tell(&bar, done, total);
         if silent {
         } else if bar.is_hidden() {
-            eprintln!("{done} of {total}: {line}");
+            say_aside(&format!("{done} of {total}: {line}"));
         } else {
-            bar.println(format!("{done} of {total}: {line}"));
+            progress::above(&bar, &format!("{done} of {total}: {line}"));
         }
     };
     let found = swept(asked, &plan, &out, &tell);
@@ -277,7 +278,7 @@ fn run_sweep(arguments: &ProveArguments) -> Result<ExitCode, AppError> {
         say(&format!(
             "{}, tables in {}\n",
             counted(count, "outcome"),
-            file.display()
+            shown_path(&file)
         ))?;
     }
     Ok(ExitCode::Done)
@@ -347,8 +348,8 @@ pub(super) fn run_laboratory(arguments: &LaboratoryArguments) -> Result<ExitCode
         say(&format!(
             "{} written to {}, their truth to {}\n",
             counted(names.len(), "case"),
-            cases.display(),
-            sealed.display()
+            shown_path(&cases),
+            shown_path(&sealed)
         ))?;
     }
     Ok(ExitCode::Done)
@@ -448,10 +449,10 @@ fn prepare_proof(arguments: &ProveArguments) -> Result<PathBuf, AppError> {
     }
     let made = arguments.folder().join("laboratory");
     if !arguments.json {
-        eprintln!(
+        say_aside(&format!(
             "note: there is no {CASES} here, so the laboratory makes the same cases, into {}",
-            made.display()
-        );
+            shown_path(&made)
+        ));
     }
     make_cases(&made, &Which::Shipped(&arguments.only), arguments.json)?;
     Ok(made.join("cases"))

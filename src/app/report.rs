@@ -12,6 +12,7 @@ use super::files::{
 };
 use super::fleet::{self, FLEET};
 use super::output::say;
+use super::terminal::shown_path;
 use super::vary::{self, SWEEP};
 use crate::design::StudyDocument;
 use crate::diagnosis::answer::Answer;
@@ -34,6 +35,9 @@ Examples:
   idc report runs/step
   # elsewhere
   idc report runs/step --out runs/step_for_you.html";
+
+/// Length of a picture that a page takes in at most [byte]; ours have a twentieth of it.
+const MOST_OF_PICTURE: u64 = 4_000_000;
 
 #[derive(Debug, Args)]
 pub(super) struct ReportArguments {
@@ -119,7 +123,7 @@ pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
         let size = text.len() as f64 / 1e6;
         say(&format!(
             "page of the {kind} written to {} ({size:.1} MB)\n",
-            out.display()
+            shown_path(&out)
         ))?;
     }
     Ok(ExitCode::Done)
@@ -127,7 +131,7 @@ pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
 
 /// The page of a run, from its folder.
 fn run_page(folder: &Path) -> Result<String, AppError> {
-    let picture = |name: &str| crate::file::read_text(folder.join(name)).ok();
+    let picture = |name: &str| picture(&folder.join(name));
     // A bench has none, nor has a run of an older version.
     let space = folder.join(DRAWING);
     let profile = folder.join(EDGE_PROFILE);
@@ -137,14 +141,30 @@ fn run_page(folder: &Path) -> Result<String, AppError> {
         result: &read_json(&folder.join(SUMMARY))?,
         recording: &read_samples(folder)?,
         sketches: &Sketches {
-            cell: picture(CELL),
-            edge: picture(EDGE),
-            lean: picture(LEAN),
+            cell: picture(CELL)?,
+            edge: picture(EDGE)?,
+            lean: picture(LEAN)?,
             space: space.is_file().then(|| read_json(&space)).transpose()?,
         },
         profile: profile.as_ref(),
     };
     Ok(html(&report.document()))
+}
+
+/// A picture, if it is there.
+fn picture(path: &Path) -> Result<Option<String>, RecordingError> {
+    let Some(data) = path.metadata().ok().filter(std::fs::Metadata::is_file) else {
+        return Ok(None);
+    };
+    if data.len() > MOST_OF_PICTURE {
+        let reason = format!(
+            "it has {} bytes, expected a picture of at most {MOST_OF_PICTURE}, as idc run writes it; without the file the page has no picture",
+            data.len()
+        );
+        return Err(RecordingError::read(path, reason));
+    }
+    let text = crate::file::read_text(path);
+    Ok(Some(text.map_err(|e| RecordingError::read(path, e))?))
 }
 
 /// Signals of a run, from its folder.

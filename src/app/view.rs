@@ -10,6 +10,7 @@ use super::diagnose::natural;
 use super::error::{AppError, ExitCode};
 use super::files::{BOARD, RECORDING};
 use super::output::say;
+use super::terminal::say_aside;
 use super::viewer::{NativeViewer, Served, ViewerError, WebPage};
 use crate::viewer::{check_rrd, viewer_version};
 
@@ -79,7 +80,7 @@ pub(super) fn run(arguments: &ViewArguments) -> Result<ExitCode, AppError> {
     match native {
         Some(Ok(viewer)) => return show_native(arguments, &files, &viewer),
         Some(Err(error)) if arguments.native => return Err(error.into()),
-        Some(Err(error)) => eprintln!("note: {}", why_web(&error)),
+        Some(Err(error)) => say_aside(&format!("note: {}", why_web(&error))),
         None => (),
     }
     show_page(arguments, &files)
@@ -163,7 +164,7 @@ fn show_page(arguments: &ViewArguments, files: &[PathBuf]) -> Result<ExitCode, A
     } else {
         say(&format!("{address}  (Ctrl-C ends)\n"))?;
     }
-    page.serve();
+    page.serve()?;
     Ok(ExitCode::Done)
 }
 

@@ -1,6 +1,7 @@
 //! A document as Markdown, for the text panel of a recording and for repositories.
 
-use super::{Block, Cell, Document, Table, Tone, on_the_page};
+use super::{Block, Cell, Document, Table, Tone, address, on_the_page};
+use super::{printable, printable_lines};
 
 /// The document as Markdown.
 #[must_use]
@@ -57,11 +58,14 @@ fn block(block: &Block<'_>, level: usize) -> String {
         Block::Heading(text) => format!("\n{}", heading(text, level)),
         Block::Paragraph(text) => format!("\n{}\n", escape(text)),
         Block::Table(of) => table(of),
-        Block::Lines(lines) => format!("\n```\n{}\n```\n", lines.trim_end()),
-        Block::File(name, words) if is_picture(name) => {
-            format!("\n![{}]({name})\n", escape(words))
+        Block::Lines(lines) => fenced(lines.trim_end()),
+        Block::File(name, words) => {
+            let (target, shown) = (address(name), escape(words));
+            match is_picture(name) {
+                true => format!("\n![{shown}]({target})\n"),
+                false => format!("\n[{}]({target}): {shown}\n", escape(name)),
+            }
         }
-        Block::File(name, words) => format!("\n[{}]({name}): {}\n", escape(name), escape(words)),
         Block::Hint(_)
         | Block::Strip(_)
         | Block::Panel(_)
@@ -98,7 +102,7 @@ fn table(table: &Table) -> String {
     for cells in &table.rows {
         let cell = |cell: &Cell| match cell {
             Cell::Verdict(words, false) => format!("**{}**", escape(words)),
-            Cell::Link(words, target) => format!("[{}]({target})", escape(words)),
+            Cell::Link(words, target) => format!("[{}]({})", escape(words), address(target)),
             other => escape(&other.words()),
         };
         out += &row(&cells.iter().map(cell).collect::<Vec<_>>());
@@ -110,14 +114,17 @@ fn row(cells: &[String]) -> String {
     format!("| {} |\n", cells.join(" | "))
 }
 
+/// Lines as they are, in a fence that none of them ends.
+fn fenced(lines: &str) -> String {
+    let runs = lines.split(|letter| letter != '`').map(str::len);
+    let fence = "`".repeat(runs.max().unwrap_or(0).max(2) + 1);
+    format!("\n{fence}\n{}\n{fence}\n", printable_lines(lines))
+}
+
 /// Text in which nothing is taken for Markdown or for the end of a cell.
 fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
-    for letter in text.chars() {
-        if letter.is_control() {
-            out.push(' ');
-            continue;
-        }
+    for letter in printable(text).chars() {
         if "\\`*_[]<>|#~$&!".contains(letter) {
             out.push('\\');
         }
@@ -129,4 +136,33 @@ fn escape(text: &str) -> String {
 fn is_picture(name: &str) -> bool {
     let extension = std::path::Path::new(name).extension();
     extension.is_some_and(|extension| extension.eq_ignore_ascii_case("svg"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::document::{Column, Section};
+
+    #[test]
+    fn nothing_of_a_name_leads_elsewhere_or_ends_its_place() {
+        let name = "javascript:alert(1)";
+        let cell = Cell::Link("x](http://a)\u{1b}".to_owned(), name.to_owned());
+        let table = Table::new("", Column::list("name"), vec![vec![cell]]);
+        let blocks = vec![
+            Block::Table(table),
+            Block::File("a b)(c.svg".to_owned(), "picture".to_owned()),
+            Block::Lines("```\n[out](http://a)".to_owned()),
+        ];
+        let text = markdown(&Document {
+            sections: vec![Section::new("All", blocks)],
+            ..Document::default()
+        });
+        for expected in [
+            "[x\\](http://a)\\\\u001b](javascript%3Aalert%281%29)",
+            "![picture](a%20b%29%28c.svg)",
+            "\n````\n```\n[out](http://a)\n````\n",
+        ] {
+            assert!(text.contains(expected), "{expected} in {text}");
+        }
+    }
 }

@@ -2,8 +2,10 @@
 //!
 //! A [`Document`] is plain data: a verdict, key numbers, sections of [`Block`]s. [`text`] writes it for a terminal or a file, [`markdown`] for the viewer and
 //! for repositories, [`html`] as one file for a browser, in which uPlot (`assets/page/uplot/`) draws the panels and three.js (`assets/page/three/`) what is seen
-//! in space; the page may ask for nothing over a network, and says so to the browser (Content-Security-Policy). A renderer that cannot draw a block names the
+//! in space; the page may ask for nothing over a network and run no script but these, and says so to the browser (Content-Security-Policy). A renderer that cannot draw a block names the
 //! file that shows it. The same document gives the same bytes.
+
+use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 
 mod drawing;
 mod html;
@@ -11,6 +13,7 @@ mod markdown;
 mod number;
 mod packed;
 mod panel;
+mod printable;
 mod text;
 mod thin;
 
@@ -19,8 +22,17 @@ pub use html::html;
 pub use markdown::{markdown, markdown_below};
 pub use number::Number;
 pub use panel::{Band, Figure, Horizontal, Marker, Panel, Role, Series, Stroke};
+pub use printable::{printable, printable_lines, printable_styled};
 pub use text::{Style, WIDTH, text, wrapped};
 pub use thin::kept;
+
+/// Letters that are encoded in an address: all but those that mean nothing there.
+const LEFT_OUT: &AsciiSet = &NON_ALPHANUMERIC
+    .remove(b'-')
+    .remove(b'_')
+    .remove(b'.')
+    .remove(b'~')
+    .remove(b'/');
 
 /// A result for people.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -98,7 +110,8 @@ pub enum Block<'a> {
     Strip(Strip),
     /// Lines as they are.
     Lines(String),
-    /// Pictures of our own side by side as far as there is room: what each shows, and an SVG document in the page's colours.
+    /// Pictures side by side as far as there is room: what each shows, and an SVG document, which may be another's: a page shows it as an image, in which
+    /// nothing runs.
     Sketches(Vec<(String, String)>),
     /// Bodies and lines in space, which a reader can turn; on paper, and where a browser does not draw in space, pictures as above.
     InSpace(&'a Drawing, Vec<(String, String)>),
@@ -274,9 +287,15 @@ impl From<Number> for Cell {
     }
 }
 
-/// A name from a file on one line, without anything that steers a terminal.
-fn printable(name: &str) -> String {
-    name.replace(char::is_control, " ")
+/// A target as an address: of a place on the page after `#`, otherwise of a file. Neither a scheme (`javascript:`) nor a host can be in it.
+fn address(target: &str) -> String {
+    let (mark, rest) = match target.strip_prefix('#') {
+        Some(place) => ("#", place),
+        // Two of them would begin a host.
+        None if target.starts_with('/') => ("/", target.trim_start_matches('/')),
+        None => ("", target),
+    };
+    format!("{mark}{}", utf8_percent_encode(rest, LEFT_OUT))
 }
 
 /// Names of what a block shows and neither text nor Markdown can: charts, drawings, pictures.

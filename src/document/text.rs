@@ -1,5 +1,7 @@
 //! A document for a terminal, or a file of plain text: no line longer than [`WIDTH`].
 
+use std::borrow::Cow;
+
 use comfy_table::{
     Attribute, Cell as TextCell, CellAlignment, Color, ColumnConstraint, ContentArrangement,
     Table as TextTable, presets::NOTHING,
@@ -7,7 +9,8 @@ use comfy_table::{
 
 use textwrap::core::display_width;
 
-use super::{Block, Cell, Column, Document, Section, Table, Tone, on_the_page, printable};
+use super::{Block, Cell, Column, Document, Section, Table, Tone, on_the_page};
+use super::{printable, printable_lines};
 
 /// Columns of a terminal.
 pub const WIDTH: usize = 80;
@@ -43,8 +46,8 @@ impl Style {
 /// The document as text.
 #[must_use]
 pub fn text(document: &Document<'_>, style: Style) -> String {
-    let mut out = style.paint("1", &wrapped("", &printable(&document.title)));
-    let verdict = wrapped("", &printable(&document.verdict));
+    let mut out = style.paint("1", &wrapped("", &document.title));
+    let verdict = wrapped("", &document.verdict);
     out += &match document.tone {
         Tone::Plain | Tone::Found => verdict,
         Tone::Good => style.paint("32", &verdict),
@@ -52,11 +55,11 @@ pub fn text(document: &Document<'_>, style: Style) -> String {
         Tone::Bad => style.paint("1;31", &verdict),
     };
     for lead in &document.lead {
-        out += &wrapped("", &printable(lead));
+        out += &wrapped("", lead);
     }
     if !document.facts.is_empty() {
         let rows = document.facts.iter().map(|fact| {
-            let remark = Cell::from(printable(&fact.remark));
+            let remark = Cell::from(fact.remark.as_str());
             vec![Cell::from(fact.name.as_str()), fact.value.clone(), remark]
         });
         let columns = Column::list(" | # | ");
@@ -84,6 +87,7 @@ fn hanging([first, others]: [&str; 2], paragraph: &str) -> String {
     if paragraph.is_empty() {
         return String::new();
     }
+    let paragraph = printable(paragraph);
     let options = textwrap::Options::new(WIDTH)
         .initial_indent(first)
         .subsequent_indent(others)
@@ -110,10 +114,10 @@ fn section(section: &Section<'_>, style: Style) -> String {
 /// A block; nothing of what is drawn, which the last line names.
 fn block(block: &Block<'_>, style: Style) -> String {
     match block {
-        Block::Heading(text) => style.paint("1", &wrapped(INDENT, &printable(text))),
-        Block::Paragraph(text) => wrapped(INDENT, &printable(text)),
+        Block::Heading(text) => style.paint("1", &wrapped(INDENT, text)),
+        Block::Paragraph(text) => wrapped(INDENT, text),
         Block::Table(of) => table(of, style),
-        Block::Lines(lines) => lines
+        Block::Lines(lines) => printable_lines(lines)
             .lines()
             .map(|line| format!("{INDENT}{line}").trim_end().to_owned() + "\n")
             .collect(),
@@ -129,10 +133,12 @@ fn block(block: &Block<'_>, style: Style) -> String {
 
 /// Columns without borders; what is too long for its column goes on below. Where not even the words fit beside one another, a paragraph for each row.
 fn table(table: &Table, style: Style) -> String {
-    let shown = |index: usize| {
-        let mut cells = table.rows.iter().map(|row| &row[index]);
-        !cells.all(|cell| matches!(cell, Cell::Interval(_)) || cell.words().is_empty())
-    };
+    let heads = table.columns.iter().map(|column| printable(&column.name));
+    let heads: Vec<String> = heads.map(Cow::into_owned).collect();
+    let words = |cell: &Cell| printable(&cell.words()).into_owned();
+    let rows = table.rows.iter().map(|row| row.iter().map(words));
+    let rows: Vec<Vec<String>> = rows.map(Iterator::collect).collect();
+    let shown = |index: usize| rows.iter().any(|row| !row[index].is_empty());
     let shown: Vec<usize> = (0..table.columns.len())
         .filter(|index| shown(*index))
         .collect();
@@ -141,15 +147,15 @@ fn table(table: &Table, style: Style) -> String {
         false => style.paint("2", &wrapped(INDENT, &table.caption)),
     };
     let widest = |index: &usize, of: fn(&str) -> usize| {
-        let cells = table.rows.iter().map(|row| row[*index].words());
-        let texts = cells.chain([table.columns[*index].name.clone()]);
-        texts.map(|text| of(&text)).max().unwrap_or(0)
+        let cells = rows.iter().map(|row| &row[*index]);
+        let texts = cells.chain([&heads[*index]]);
+        texts.map(|text| of(text)).max().unwrap_or(0)
     };
     let longest_word = |text: &str| text.split(' ').map(display_width).max().unwrap_or(0);
     let least: Vec<usize> = shown.iter().map(|i| widest(i, longest_word)).collect();
     let room = WIDTH - INDENT.len();
     if least.iter().map(|width| width + GAP).sum::<usize>() > room {
-        let rows = table.rows.iter().map(|row| record(table, &shown, row));
+        let rows = rows.iter().map(|row| record(table, &shown, row));
         return caption + &rows.collect::<String>();
     }
     let mut of = TextTable::new();
@@ -160,19 +166,16 @@ fn table(table: &Table, style: Style) -> String {
     if style == Style::Coloured {
         of.enforce_styling();
     }
-    if shown
-        .iter()
-        .any(|index| !table.columns[*index].name.is_empty())
-    {
+    if shown.iter().any(|index| !heads[*index].is_empty()) {
         let heads = shown.iter().map(|index| {
-            let head = TextCell::new(&table.columns[*index].name).add_attribute(Attribute::Dim);
+            let head = TextCell::new(&heads[*index]).add_attribute(Attribute::Dim);
             aligned(head, table.columns[*index].is_numeric)
         });
         of.set_header(heads.collect::<Vec<_>>());
     }
-    for row in &table.rows {
+    for (row, words) in table.rows.iter().zip(&rows) {
         let cells = shown.iter().map(|index| {
-            let own = TextCell::new(printable(&row[*index].words()));
+            let own = TextCell::new(&words[*index]);
             let own = match &row[*index] {
                 Cell::Verdict(_, true) => own.fg(Color::Green),
                 Cell::Verdict(_, false) => own.fg(Color::Red).add_attribute(Attribute::Bold),
@@ -209,17 +212,14 @@ fn widths(least: &[usize], most: &[usize], room: usize) -> Vec<usize> {
 }
 
 /// A row as a paragraph: its words, then its numbers by the names of their columns.
-fn record(table: &Table, shown: &[usize], row: &[Cell]) -> String {
-    let filled = shown
-        .iter()
-        .filter(|index| !row[**index].words().is_empty());
+fn record(table: &Table, shown: &[usize], row: &[String]) -> String {
+    let filled = shown.iter().filter(|index| !row[**index].is_empty());
     let parts = filled.map(|index| match table.columns[*index].is_numeric {
-        true => format!("{} {}", table.columns[*index].name, row[*index].words()),
-        false => row[*index].words(),
+        true => format!("{} {}", table.columns[*index].name, row[*index]),
+        false => row[*index].clone(),
     });
     let parts: Vec<String> = parts.collect();
-    let text = printable(&parts.join("; "));
-    hanging([INDENT, "    "], &text)
+    hanging([INDENT, "    "], &parts.join("; "))
 }
 
 fn aligned(cell: TextCell, is_numeric: bool) -> TextCell {

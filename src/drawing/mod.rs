@@ -1,5 +1,5 @@
 //! A scene as a picture: solid bodies seen from one side as an image, over it in lines what is to be read - the edge in the colours of its force error,
-//! the force, names, a scale. An SVG document in the colours of the page that it stands in; the same scene gives the same bytes.
+//! the force, names, a scale. An SVG document with colours for light and dark grounds; the same scene gives the same bytes.
 
 mod cross_section;
 mod faces;

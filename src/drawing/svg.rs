@@ -2,6 +2,10 @@
 
 use glam::DVec2;
 
+/// Ink and ground in the light and in the dark, those of a page's panels (assets/page/page.css): a page shows the picture as an image, which takes no colours from
+/// it but follows its `color-scheme`. Words have a rim of the ground, as they stand on what is drawn.
+const STYLE: &str = "<style>svg{color:#1b1f23;background:#f6f7f8}text{paint-order:stroke;stroke:#f6f7f8;stroke-width:4px;stroke-linejoin:round}@media (prefers-color-scheme:dark){svg{color:#e6e9ec;background:#1d2226}text{stroke:#1d2226}}</style>\n";
+
 /// An SVG document in the making.
 pub(super) struct Svg {
     text: String,
@@ -16,7 +20,7 @@ impl Svg {
     ) -> Self {
         Self {
             text: format!(
-                "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\" aria-label=\"{name}\" font-family=\"system-ui, Arial, sans-serif\" font-size=\"16\">\n<image href=\"data:image/png;base64,{image}\" width=\"{shown_width}\" height=\"{shown_height}\"/>\n"
+                "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\" aria-label=\"{name}\" font-family=\"system-ui, Arial, sans-serif\" font-size=\"16\">\n{STYLE}<image href=\"data:image/png;base64,{image}\" width=\"{shown_width}\" height=\"{shown_height}\"/>\n"
             ),
         }
     }
@@ -25,7 +29,7 @@ impl Svg {
     pub(super) fn plain([width, height]: [usize; 2], name: &str) -> Self {
         Self {
             text: format!(
-                "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\" aria-label=\"{name}\" font-family=\"system-ui, Arial, sans-serif\" font-size=\"16\">\n"
+                "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\" aria-label=\"{name}\" font-family=\"system-ui, Arial, sans-serif\" font-size=\"16\">\n{STYLE}"
             ),
         }
     }

@@ -65,6 +65,13 @@ pub fn dask(
     of: usize,
     report: &dyn Fn(TaskMessage),
 ) -> Result<(), TaskError> {
+    if let Engine::Dask(address) = &dask.engine
+        && is_open(address)
+    {
+        report(TaskMessage::Words(format!(
+            "note: {address} asks nobody for a certificate: whoever reaches it runs programs as its user (docs/CLUSTER.md: tls://)"
+        )));
+    }
     let no_python = |reason: &dyn std::fmt::Display| TaskError::NoPython {
         python: dask.python.display().to_string(),
         reason: reason.to_string(),
@@ -115,6 +122,15 @@ pub fn dask(
     }
 }
 
+/// Whether a scheduler at this address is open to others than this machine's users.
+fn is_open(address: &str) -> bool {
+    let place = address.strip_prefix("tcp://").unwrap_or(address);
+    let host = place.rsplit_once(':').map_or(place, |(host, _)| host);
+    let host = host.trim_start_matches('[').trim_end_matches(']');
+    let is_loopback = |ip: std::net::IpAddr| ip.is_loopback();
+    !address.starts_with("tls://") && host != "localhost" && !host.parse().is_ok_and(is_loopback)
+}
+
 /// The last line that tells an error, as Python ends with one.
 fn last_words(from: Option<impl Read>) -> String {
     let mut last = "it said nothing of why".to_owned();
@@ -151,6 +167,16 @@ fn order(dask: &Dask, plan: &Path) -> serde_json::Value {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_scheduler_without_certificates_is_open_unless_it_is_this_machine_s() {
+        for open in ["tcp://10.0.0.1:8786", "10.0.0.1:8786", "tcp://node:8786"] {
+            assert!(is_open(open), "{open}");
+        }
+        for closed in ["tls://10.0.0.1:8786", "tcp://127.0.0.1:1", "tcp://[::1]:1"] {
+            assert!(!is_open(closed), "{closed}");
+        }
+    }
 
     #[test]
     fn lines_of_the_driver_are_understood() {

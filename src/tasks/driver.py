@@ -183,7 +183,14 @@ async def check(client, order):
 
 
 async def drive(order):
+    import dask
     from distributed import Client, LocalCluster
+
+    if order["address"].startswith("tls://") and not dask.config.get("distributed.comm.tls.ca-file", None):
+        refuse(
+            "the address is tls://, and Dask has no certificate here; expected distributed.comm.tls.ca-file, .client.cert and .client.key in its configuration "
+            "or environment (docs/CLUSTER.md)"
+        )
 
     if order["workers"]:
         cluster = LocalCluster(

@@ -1,6 +1,7 @@
 //! The values of each run, by its number.
 
 use std::collections::BTreeSet;
+use std::io::Read as _;
 use std::path::Path;
 use std::str::FromStr;
 
@@ -8,9 +9,12 @@ use rand::Rng;
 
 use super::latin::{LatinHypercube, stream};
 use super::variable::{Values, Variable, VaryError};
+use crate::quantity::counted;
 
 /// Runs at most.
 const MOST: usize = 10_000_000;
+/// Length of a table of points at most [byte].
+const LONGEST: u64 = 256_000_000;
 
 /// How the points lie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -54,7 +58,16 @@ pub struct Points {
     /// Of a Latin hypercube.
     latin: Option<LatinHypercube>,
     /// Of a table: its rows, in place of all else.
-    rows: Option<Vec<Vec<String>>>,
+    table: Option<Rows>,
+}
+
+/// Rows of a table.
+#[derive(Debug, Clone)]
+struct Rows {
+    file: String,
+    values: Vec<Vec<String>>,
+    /// Line of each in the file, from 1.
+    lines: Vec<u64>,
 }
 
 impl Points {
@@ -84,7 +97,7 @@ impl Points {
             seed,
             count,
             latin,
-            rows: None,
+            table: None,
         })
     }
 
@@ -93,53 +106,23 @@ impl Points {
     /// # Errors
     /// The file cannot be read, or is no such table.
     pub fn table(path: &Path) -> Result<Self, VaryError> {
-        let refuse = |reason: String| VaryError::Table {
-            file: path.display().to_string(),
+        let file = path.display().to_string();
+        let (keys, rows) = read_table(path).map_err(|reason| VaryError::Table {
+            file: file.clone(),
             reason,
-        };
-        let file = crate::file::open(path).map_err(|e| refuse(e.to_string()))?;
-        let mut reader = csv::ReaderBuilder::new()
-            .trim(csv::Trim::All)
-            .from_reader(file);
-        let keys = reader.headers().map_err(|e| refuse(e.to_string()))?.clone();
-        once(keys.iter())?;
-        if keys
-            .iter()
-            .any(|key| key.is_empty() || key.parse::<f64>().is_ok())
-        {
-            let first = keys.iter().collect::<Vec<_>>().join(",");
-            return Err(refuse(format!(
-                "its first line is `{first}`, expected a key of the scenario by its dotted path for each column"
-            )));
-        }
-        let mut rows: Vec<Vec<String>> = Vec::new();
-        for (line, record) in reader.records().enumerate() {
-            let record = record.map_err(|e| refuse(e.to_string()))?;
-            let row: Vec<String> = record.iter().map(str::to_owned).collect();
-            if let Some(place) = row.iter().position(String::is_empty) {
-                let (line, key) = (line + 2, &keys[place]);
-                return Err(refuse(format!(
-                    "line {line} has no value for `{key}`, expected one for each key"
-                )));
-            }
-            rows.push(row);
-        }
-        if rows.is_empty() {
-            return Err(refuse(
-                "it has no points, expected a line of values for each run".to_owned(),
-            ));
-        }
-        let variables = keys.iter().enumerate().map(|(place, key)| Variable {
-            key: key.to_owned(),
-            values: of_column(rows.iter().map(|row| row[place].as_str())),
+        })?;
+        let rows = Rows { file, ..rows };
+        let variables = keys.into_iter().enumerate().map(|(place, key)| Variable {
+            key,
+            values: of_column(rows.values.iter().map(|row| row[place].as_str())),
         });
         Ok(Self {
             variables: variables.collect(),
             sampling: Sampling::Grid,
             seed: 0,
-            count: rows.len(),
+            count: rows.values.len(),
             latin: None,
-            rows: Some(rows),
+            table: Some(rows),
         })
     }
 
@@ -158,13 +141,35 @@ impl Points {
     /// Whether the points are every combination: variables then do not go together.
     #[must_use]
     pub fn is_table(&self) -> bool {
-        self.rows.is_some()
+        self.table.is_some()
+    }
+
+    /// Values of a variable that are checked before anything is run: those at its ends, or all that are named, as they are written.
+    #[must_use]
+    pub fn to_check(&self, variable: usize) -> Vec<String> {
+        let of = &self.variables[variable];
+        let (Some(rows), Values::Between(ends)) = (&self.table, &of.values) else {
+            return of.to_check();
+        };
+        let written = ends.iter().filter_map(|end| {
+            let mut column = rows.values.iter().map(|row| &row[variable]);
+            column.find(|value| value.parse() == Ok(*end)).cloned()
+        });
+        written.collect()
+    }
+
+    /// Where a value of a variable stands: the file and the line of the first row that has it. None where it was typed.
+    #[must_use]
+    pub fn place_of(&self, variable: usize, value: &str) -> Option<String> {
+        let rows = self.table.as_ref()?;
+        let row = (rows.values.iter()).position(|row| row[variable] == value)?;
+        Some(format!("{}: line {}", rows.file, rows.lines[row]))
     }
 
     /// How they lie, in words.
     #[must_use]
     pub fn words(&self) -> String {
-        match (self.sampling, &self.rows) {
+        match (self.sampling, &self.table) {
             (_, Some(_)) => "the points of a table".to_owned(),
             (Sampling::Grid, None) => "every combination".to_owned(),
             (Sampling::Random(_), None) => format!("drawn at random, seed {}", self.seed),
@@ -175,8 +180,8 @@ impl Points {
     /// The values of a run, from 0, in the order of the variables.
     #[must_use]
     pub fn at(&self, run: usize) -> Vec<String> {
-        if let Some(rows) = &self.rows {
-            return rows[run].clone();
+        if let Some(rows) = &self.table {
+            return rows.values[run].clone();
         }
         match (self.sampling, &self.latin) {
             (_, Some(latin)) => {
@@ -206,6 +211,80 @@ impl Points {
             }
         }
     }
+}
+
+/// Keys and rows of a table; or the fault, and what was expected. What the file holds is not repeated before it is known to be such a table.
+fn read_table(path: &Path) -> Result<(Vec<String>, Rows), String> {
+    let file = crate::file::open(path).map_err(|e| e.to_string())?;
+    let mut text = String::new();
+    let read = file.take(LONGEST + 1).read_to_string(&mut text);
+    read.map_err(|e| e.to_string())?;
+    if text.len() as u64 > LONGEST {
+        return Err(format!(
+            "it is longer than {LONGEST} bytes, expected a table of at most as many"
+        ));
+    }
+    let mut reader = csv::ReaderBuilder::new()
+        .trim(csv::Trim::All)
+        .flexible(true)
+        .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
+    let keys = reader.headers().map_err(|e| e.to_string())?;
+    let keys: Vec<String> = keys.iter().map(str::to_owned).collect();
+    if let Some(place) = keys.iter().position(|key| !is_key(key)) {
+        return Err(format!(
+            "line 1: column {} has no key for a name, expected a key of the scenario by its dotted path for each column",
+            place + 1
+        ));
+    }
+    let twice = |(place, key)| keys[..place].contains(key);
+    if let Some((_, key)) = keys.iter().enumerate().find(|column| twice(*column)) {
+        return Err(format!(
+            "line 1: {key} is given twice, expected each key once"
+        ));
+    }
+    let (mut values, mut lines) = (Vec::new(), Vec::new());
+    for record in reader.records() {
+        let record = record.map_err(|e| e.to_string())?;
+        let line = record.position().map_or(0, csv::Position::line);
+        if record.len() != keys.len() {
+            return Err(format!(
+                "line {line}: it has {}, expected {}, one for each key",
+                counted(record.len(), "value"),
+                keys.len()
+            ));
+        }
+        for (key, value) in keys.iter().zip(&record) {
+            let number = value.parse::<f64>();
+            if value.is_empty() || number.is_ok_and(|number| !number.is_finite()) {
+                return Err(format!(
+                    "line {line}: `{key}` is `{value}`, expected a value that is finite"
+                ));
+            }
+        }
+        values.push(record.iter().map(str::to_owned).collect());
+        lines.push(line);
+        if values.len() > MOST {
+            return Err(format!("line {line}: there are more runs than {MOST}"));
+        }
+    }
+    if values.is_empty() {
+        return Err("it has no points, expected a line of values for each run".to_owned());
+    }
+    let file = String::new();
+    Ok((
+        keys,
+        Rows {
+            file,
+            values,
+            lines,
+        },
+    ))
+}
+
+/// Whether a text may be a dotted key.
+fn is_key(text: &str) -> bool {
+    let is_letter = |letter: char| letter.is_ascii_alphanumeric() || "_.-[]".contains(letter);
+    text.starts_with(|letter: char| letter.is_ascii_alphabetic()) && text.chars().all(is_letter)
 }
 
 fn once<'a>(keys: impl Iterator<Item = &'a str>) -> Result<(), VaryError> {
@@ -313,14 +392,34 @@ mod tests {
         assert_eq!(points.variables()[0].values, Values::Between([30.0, 60.5]));
         for (text, expected) in [
             ("a,b\n", "it has no points"),
-            ("1,2\n3,4\n", "its first line is `1,2`"),
-            ("a,b\n1\n", "found record with 1 fields"),
-            ("a,b\n1,\n", "line 2 has no value for `b`"),
-            ("a,a\n1,2\n", "a is given twice"),
+            ("1,2\n3,4\n", "points.csv: line 1: column 1 has no key"),
+            (
+                "a,b\n\n1\n",
+                "points.csv: line 3: it has 1 value, expected 2",
+            ),
+            ("a,b\n\"1\n\",2\n1,\n", "line 4: `b` is ``, expected"),
+            ("a,b\n1,inf\n", "points.csv: line 2: `b` is `inf`"),
+            ("a,a\n1,2\n", "points.csv: line 1: a is given twice"),
         ] {
             let refused = read(text).unwrap_err().to_string();
             assert!(refused.contains(expected), "{text}: {refused}");
         }
+        // Of a file that is no such table nothing is told.
+        let refused = read("root:$y$secret:19000\nb\n").unwrap_err().to_string();
+        assert!(!refused.contains("secret"), "{refused}");
+    }
+
+    #[test]
+    fn a_value_of_a_table_has_its_place() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("points.csv");
+        std::fs::write(&path, "a,b\n1e2,x\n\n7.50,y\n20,x\n").unwrap();
+        let points = Points::table(&path).unwrap();
+        assert_eq!(points.to_check(0), ["7.50", "1e2"]);
+        let place = |variable, value| points.place_of(variable, value).unwrap();
+        assert!(place(0, "7.50").ends_with("points.csv: line 4"));
+        assert!(place(1, "x").ends_with("points.csv: line 2"));
+        assert!(place(0, "20").ends_with("points.csv: line 5"));
     }
 
     #[test]

@@ -25,6 +25,21 @@ export const made = (name, ...words) => {
   return folder;
 };
 
+// Puts the pictures of a page into it, so that what is in them can be looked at: as images they keep it to themselves.
+export const unwrapped = (page) => page.evaluate(() => {
+  for (const image of document.querySelectorAll(".sketches img")) {
+    const holder = document.createElement("div");
+    holder.innerHTML = decodeURIComponent(image.src.slice(image.src.indexOf(",") + 1));
+    const svg = holder.firstElementChild;
+    const style = svg.querySelector("style");
+    const [light, dark] = style.textContent.split("@media (prefers-color-scheme:dark){");
+    const within = (text, place) => text.replaceAll(/(svg|text)\{/g, `${place} $1{`);
+    style.textContent = within(light, ".sketches") + within(dark.slice(0, -1), "[data-theme=dark] .sketches");
+    Object.assign(svg.style, { width: "100%", height: "auto", display: "block" });
+    image.replaceWith(svg);
+  }
+});
+
 // A page that notes what it asks for and what goes wrong.
 export const open = async (browser, address, options = {}) => {
   const context = await browser.newContext(options);

@@ -4,7 +4,7 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { drawing, launch, made, open, project, results, run } from "./common.mjs";
+import { drawing, launch, made, open, project, results, run, unwrapped } from "./common.mjs";
 
 let browser;
 let pages;
@@ -235,7 +235,8 @@ test("without WebGL a sentence, a picture and the table", async () => {
   const plain = await launch("--disable-gpu", "--disable-3d-apis");
   const { page, faults } = await open(plain, address("plate"), { viewport: { width: 390, height: 844 } });
   assert.match(await page.locator(".space .hint").innerText(), /does not draw in 3D/);
-  assert.ok(await page.locator(".space .sketches svg").isVisible());
+  assert.ok(await page.locator(".space .sketches img").isVisible());
+  await unwrapped(page);
   const numbers = await page.locator(".space .sketches text").allTextContents();
   assert.ok(numbers.includes("1") && numbers.includes("3"), numbers.join());
   assert.equal(await page.locator("tbody tr").count(), 18);
@@ -246,7 +247,7 @@ test("without WebGL a sentence, a picture and the table", async () => {
 test("on paper the picture stands in the drawing's place", async () => {
   const { page } = await opened("bracket", { viewport: { width: 1024, height: 900 } });
   await page.emulateMedia({ media: "print" });
-  assert.ok(await page.locator(".space .sketches svg").isVisible());
+  assert.ok(await page.locator(".space .sketches img").isVisible());
   assert.ok(!(await page.locator(".space canvas").isVisible()));
   assert.ok(await page.getByText("edge-0", { exact: true }).isVisible(), "the table has its names");
   await page.context().close();

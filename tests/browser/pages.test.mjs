@@ -5,7 +5,7 @@ import { cpSync, mkdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { launch, made, open, project, results, run } from "./common.mjs";
+import { launch, made, open, project, results, run, unwrapped } from "./common.mjs";
 import { lookedAt } from "./looks.mjs";
 
 const WIDTHS = [390, 1024, 1920];
@@ -69,6 +69,7 @@ for (const [name, make] of Object.entries(PAGES)) {
   test(`${name}: nothing beyond its place, nothing cut, nothing pale, nothing without a name`, async () => {
     const { page, faults } = await open(browser, address(make()), { viewport: { width: WIDTHS[0], height: 900 }, colorScheme: "light" });
     await allDrawn(page);
+    await unwrapped(page);
     const found = [];
     const look = async (state) => {
       await settled(page);

@@ -4,7 +4,7 @@ import { statSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
-import { launch, made, open, results, run } from "./common.mjs";
+import { launch, made, open, results, run, unwrapped } from "./common.mjs";
 
 let browser;
 let pages;
@@ -46,6 +46,7 @@ for (const name of ["diagnosis", "run", "bench", "compare"]) {
 for (const [name, count] of [["run", 2], ["bench", 1]]) {
   test(`${name}: the picture is there`, async () => {
     const { page, faults } = await open(browser, address(name));
+    await unwrapped(page);
     const pictures = await page.evaluate(async () => Promise.all([...document.querySelectorAll(".sketches svg image")].map(async (picture) => {
       const image = new Image();
       image.src = picture.getAttribute("href");

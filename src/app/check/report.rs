@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::AppError;
 use crate::device::DeviceParameters;
-use crate::document::{Block, Cell, Column, Document, Section, Style, Table, text};
+use crate::document::{Block, Cell, Column, Document, Section, Style, Table, printable, text};
 use crate::scenario::Expectation;
 
 /// An explanation.
@@ -157,7 +157,7 @@ impl Report {
             ..Document::default()
         };
         // A command is to be copied whole.
-        text(&document, Style::Plain) + &format!("next: {}\n", self.next)
+        text(&document, Style::Plain) + &format!("next: {}\n", printable(&self.next))
     }
 
     /// For programs.

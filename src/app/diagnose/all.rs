@@ -10,6 +10,7 @@ use super::super::files::OverwritePolicy;
 use super::super::interrupt::Interruptible;
 use super::super::output::say;
 use super::super::progress;
+use super::super::terminal::{say_aside, shown_path};
 use super::one::{Prepared, complete, is_case};
 use super::shared::{SharedFamily, SharingCase, shared};
 use crate::case::{RIG, is_cell_case};
@@ -204,13 +205,13 @@ pub(super) fn report(
             ..Document::default()
         };
         say(&text(&document, Style::Plain))?;
-        say(&format!("written to {}\n", out.display()))?;
+        say(&format!("written to {}\n", shown_path(out)))?;
     }
     let failed: Vec<&Outcome> = outcomes.iter().filter(|o| o.result.is_err()).collect();
     for outcome in &failed {
         // As JSON they stand among the results.
         if let (Err(error), false) = (&outcome.result, json) {
-            eprintln!("error: {}: {error}", outcome.name);
+            say_aside(&format!("error: {}: {error}", outcome.name));
         }
     }
     if failed.is_empty() {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use super::super::error::{AppError, ExitCode};
+use super::super::terminal::say_aside;
 use crate::case::Case;
 use crate::fleet::{Diagnosed, Started};
 use crate::replay::LoadedCell;
@@ -142,7 +143,7 @@ fn says_rig(file: &Path) -> bool {
 pub(in super::super) fn report_result(store: &Store, id: &str) -> Result<ExitCode, AppError> {
     let result: Diagnosed = store.read(id)?;
     if !result.reason.is_empty() {
-        eprintln!("{}", result.reason);
+        say_aside(&result.reason);
     }
     Ok(match result.code {
         0 => ExitCode::Done,

@@ -10,6 +10,7 @@ use super::super::files::{OutputFolder, OverwritePolicy, RUN_NAMES, output_folde
 use super::super::interrupt::Interruptible;
 use super::super::output::show;
 use super::super::progress;
+use super::super::terminal::say_aside;
 use super::super::viewer::{Viewing, Watch};
 use super::job::RunOptions;
 use super::settings::{Setting, Variant, with_flags};
@@ -123,13 +124,13 @@ pub(super) fn one(
     };
     if !quiet {
         for note in job.notes() {
-            eprintln!("note: {note}");
+            say_aside(&format!("note: {note}"));
         }
     }
     let watch = viewing.map(Watch::begin).transpose()?;
     let address = watch.as_ref().and_then(Watch::address);
     if let (Some(address), false) = (address, arguments.quiet) {
-        eprintln!("watch the run at {address}");
+        say_aside(&format!("watch the run at {address}"));
     }
     let interruptible = Interruptible::of_one("run", &path);
     let bar = progress::bar("simulating", quiet);
@@ -153,7 +154,7 @@ pub(super) fn one(
         &outcome.names,
     )?;
     for line in &outcome.messages {
-        eprintln!("{line}");
+        say_aside(line);
     }
     if let Some(watch) = watch {
         let (scene, summary) = outcome.shown;

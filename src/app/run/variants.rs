@@ -9,9 +9,10 @@ use super::super::compare::write_page;
 use super::super::error::{AppError, ExitCode};
 use super::super::files::{OutputFolder, OverwritePolicy, RUN_NAMES, prepare_file};
 use super::super::interrupt::Interruptible;
-use super::super::output::say;
+use super::super::output::{say, say_styled};
 use super::super::progress;
 use super::super::report::read_json;
+use super::super::terminal::{say_aside, shown_path};
 use super::command::RunArguments;
 use super::job::code;
 use super::settings::{Variant, blamed, with_flags};
@@ -81,7 +82,7 @@ pub(super) fn run(
             Err(_) => drop(failed.fetch_add(1, Ordering::Relaxed)),
         }
         bar.inc(PARTS.saturating_sub(before) as u64);
-        bar.set_message(interruptible.done().to_string());
+        progress::words(&bar, &interruptible.done().to_string());
         done.map(Some)
     });
     bar.finish_and_clear();
@@ -163,15 +164,15 @@ fn print_result(arguments: &RunArguments, out: &Path, runs: &[Done]) -> Result<E
         let all = all?;
         say(&format!("{}\n", serde_json::to_string_pretty(&all)?))?;
     } else if !arguments.quiet {
-        say(&text(&document(runs), arguments.run_options().style))?;
+        say_styled(&text(&document(runs), arguments.run_options().style))?;
         let count = runs.len();
-        let folder = out.display();
+        let folder = shown_path(out);
         say(&format!("written to {folder}: {count} folders, {PAGE}\n"))?;
     }
     let codes = runs.iter().map(|run| {
         let code = code(&run.result);
         for line in run.result.complaints() {
-            eprintln!("{}: {line}", run.variant.name);
+            say_aside(&format!("{}: {line}", run.variant.name));
         }
         code
     });

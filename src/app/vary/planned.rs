@@ -10,14 +10,15 @@ use crate::cell::arm_options;
 use crate::recording::provenance::SourceFile;
 use crate::scenario::{AnyScenario, KeyValue, files_of_cell, led_to};
 use crate::tasks::{Head, Plan, Task, name_of};
-use crate::vary::{Sweep, Variable};
+use crate::vary::Sweep;
 
 impl Sweep {
     /// Sees whether each value at the ends of its range, or that is named, is one that its key takes: with the others as they are in the file, or with all
     /// others at their first or last, as keys may only go together.
     pub(super) fn check(&self) -> Result<(), AppError> {
         let variables = self.points.variables();
-        let ends: Vec<Vec<String>> = variables.iter().map(Variable::to_check).collect();
+        let ends = (0..variables.len()).map(|place| self.points.to_check(place));
+        let ends: Vec<Vec<String>> = ends.collect();
         for (place, variable) in variables.iter().enumerate() {
             for value in &ends[place] {
                 let own = KeyValue::typed(&variable.key, value);
@@ -34,7 +35,11 @@ impl Sweep {
                 };
                 let others = [together(|ends| ends.first()), together(|ends| ends.last())];
                 if variables.len() == 1 || others.iter().all(Result::is_err) {
-                    return Err(blamed(error, &[own], &self.template));
+                    let blamed = blamed(error, &[own], &self.template);
+                    return Err(match self.points.place_of(place, value) {
+                        Some(row) => blamed.in_row(&row, &variable.key, value),
+                        None => blamed,
+                    });
                 }
             }
         }
@@ -75,15 +80,11 @@ impl Sweep {
             files: shared.clone(),
         };
         // A number leads to no other file.
-        let texts: Vec<usize> = (self.points.variables().iter().enumerate())
-            .filter(|(_, variable)| {
-                variable
-                    .to_check()
-                    .iter()
-                    .any(|v| v.parse::<f64>().is_err())
-            })
-            .map(|(place, _)| place)
-            .collect();
+        let is_text = |place: &usize| {
+            let values = self.points.to_check(*place);
+            values.iter().any(|value| value.parse::<f64>().is_err())
+        };
+        let texts: Vec<usize> = (0..self.points.variables().len()).filter(is_text).collect();
         let mut known: BTreeMap<Vec<String>, Vec<SourceFile>> = BTreeMap::new();
         let tasks = (0..self.points.count()).map(|run| {
             let values = self.points.at(run);

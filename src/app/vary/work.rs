@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::super::error::{AppError, ExitCode};
 use super::super::run::{Numbers, numbers};
+use super::super::terminal::say_aside;
 use crate::scenario::{KeyValue, ScenarioTemplate};
 use crate::tasks::{Plan, Store, Task, TaskError};
 
@@ -69,7 +70,7 @@ impl Worker {
 pub(in super::super) fn report_result(store: &Store, id: &str) -> Result<ExitCode, AppError> {
     let numbers: Numbers = store.read(id)?;
     if !numbers.reason.is_empty() {
-        eprintln!("{}", numbers.reason);
+        say_aside(&numbers.reason);
     }
     Ok(match numbers.code {
         0 => ExitCode::Done,

@@ -1,25 +1,37 @@
-//! Bytes that are read while they are written, by any number of readers, each from the start.
+//! Bytes that are read while they are written, by any number of readers, each from the start. A piece is shared with all of them, not copied.
 
-use std::io::{Read, Result, Write};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::io::{Result, Write};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::task::{Context, Poll, Waker};
+
+use bytes::Bytes;
 
 #[derive(Default)]
 struct Content {
-    bytes: Vec<u8>,
+    pieces: Vec<Bytes>,
     complete: bool,
+    waiting: Vec<Waker>,
 }
 
 /// Bytes written so far.
 #[derive(Default)]
 pub(in crate::app) struct LiveBuffer {
     content: Mutex<Content>,
-    grown: Condvar,
 }
 
 impl LiveBuffer {
     fn content(&self) -> MutexGuard<'_, Content> {
         // Bytes are appended whole, so they are good even if a writer panicked.
         self.content.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Changes the content and wakes those who wait for it.
+    fn grow(&self, change: impl FnOnce(&mut Content)) {
+        let mut content = self.content();
+        change(&mut content);
+        let waiting = std::mem::take(&mut content.waiting);
+        drop(content);
+        waiting.into_iter().for_each(Waker::wake);
     }
 
     /// The one who writes; with it gone, the content is complete.
@@ -41,8 +53,8 @@ pub(in crate::app) struct LiveBufferWriter(Arc<LiveBuffer>);
 
 impl Write for LiveBufferWriter {
     fn write(&mut self, bytes: &[u8]) -> Result<usize> {
-        self.0.content().bytes.extend_from_slice(bytes);
-        self.0.grown.notify_all();
+        let piece = Bytes::copy_from_slice(bytes);
+        self.0.grow(|content| content.pieces.push(piece));
         Ok(bytes.len())
     }
 
@@ -53,32 +65,30 @@ impl Write for LiveBufferWriter {
 
 impl Drop for LiveBufferWriter {
     fn drop(&mut self) {
-        self.0.content().complete = true;
-        self.0.grown.notify_all();
+        self.0.grow(|content| content.complete = true);
     }
 }
 
 /// Reads a [`LiveBuffer`], waiting for what is still to come.
 pub(super) struct LiveBufferReader {
     buffer: Arc<LiveBuffer>,
+    /// Piece that comes next.
     place: usize,
 }
 
-impl Read for LiveBufferReader {
-    fn read(&mut self, into: &mut [u8]) -> Result<usize> {
-        let content = self.buffer.content();
-        let waiting =
-            |content: &mut Content| content.bytes.len() == self.place && !content.complete;
-        let content = self
-            .buffer
-            .grown
-            .wait_while(content, waiting)
-            .unwrap_or_else(PoisonError::into_inner);
-        let rest = &content.bytes[self.place..];
-        let count = rest.len().min(into.len());
-        into[..count].copy_from_slice(&rest[..count]);
-        self.place += count;
-        Ok(count)
+impl LiveBufferReader {
+    /// The next piece, none at the end.
+    pub(super) fn poll_next(&mut self, context: &Context<'_>) -> Poll<Option<Bytes>> {
+        let mut content = self.buffer.content();
+        if let Some(piece) = content.pieces.get(self.place) {
+            self.place += 1;
+            return Poll::Ready(Some(piece.clone()));
+        }
+        if content.complete {
+            return Poll::Ready(None);
+        }
+        content.waiting.push(context.waker().clone());
+        Poll::Pending
     }
 }
 
@@ -91,13 +101,20 @@ mod tests {
         let buffer = Arc::new(LiveBuffer::default());
         let mut writer = buffer.writer();
         let all = |mut reader: LiveBufferReader| {
-            let mut text = String::new();
-            reader.read_to_string(&mut text).unwrap();
-            text
+            let runtime = tokio::runtime::Builder::new_current_thread().build();
+            runtime.unwrap().block_on(async {
+                let mut text = Vec::new();
+                while let Some(piece) = std::future::poll_fn(|at| reader.poll_next(at)).await {
+                    text.extend_from_slice(&piece);
+                }
+                String::from_utf8(text).unwrap()
+            })
         };
         let early = buffer.reader();
         let early = std::thread::spawn(move || all(early));
         writer.write_all(b"first, ").unwrap();
+        // The reader has the first piece and waits.
+        std::thread::sleep(std::time::Duration::from_millis(50));
         writer.write_all(b"second").unwrap();
         drop(writer);
         assert_eq!(early.join().unwrap(), "first, second");

@@ -1,8 +1,10 @@
 //! Viewers of recordings: the native one where it is installed, the web one on loopback, and runs that are watched while they go on.
 
+mod content;
 mod live_buffer;
 mod native;
 mod page;
+mod patient;
 mod watch;
 
 pub(super) use native::NativeViewer;

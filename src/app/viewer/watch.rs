@@ -8,6 +8,7 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
+use super::super::terminal::say_aside;
 use super::live_buffer::{LiveBuffer, LiveBufferWriter};
 use super::{NativeViewer, Served, ViewerError, WebPage};
 use crate::recording::{Recording, RecordingError};
@@ -115,7 +116,12 @@ impl Watch {
             }
             Viewing::Web(page, writer) => {
                 let served = Arc::clone(&page);
-                std::thread::spawn(move || served.serve());
+                // That it cannot be shown does not end the run.
+                std::thread::spawn(move || {
+                    if let Err(error) = served.serve() {
+                        say_aside(&format!("note: {error}"));
+                    }
+                });
                 (LiveOutlet::Writer(Box::new(writer)), Some(page))
             }
             Viewing::Elsewhere(address) => (LiveOutlet::Viewer(address), None),
@@ -145,10 +151,12 @@ impl Watch {
     pub(in crate::app) fn close(self, scene: Scene, summary_markdown: String, quiet: bool) {
         let address = self.address();
         if let Err(error) = self.end(scene, summary_markdown) {
-            eprintln!("note: {error}; the files hold all of it");
+            say_aside(&format!("note: {error}; the files hold all of it"));
         } else if let Some(address) = address {
             if !quiet {
-                eprintln!("the run can be looked at under {address} until Ctrl-C");
+                say_aside(&format!(
+                    "the run can be looked at under {address} until Ctrl-C"
+                ));
             }
             loop {
                 std::thread::park();

@@ -1,12 +1,14 @@
 //! A page as one HTML document.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html as markup};
+use percent_encoding::{AsciiSet, NON_ALPHANUMERIC, utf8_percent_encode};
 use serde_json::{Value, json};
 
 mod chart;
+mod policy;
 
-use super::packed;
 use super::{Block, Cell, Document, Panel, Section, Strip, Table, Tone};
+use super::{address, first_sentence, packed};
 
 const STYLE: &str = include_str!("../../../assets/page/page.css");
 const CHART_STYLE: &str = include_str!("../../../assets/page/uplot/uPlot.min.css");
@@ -14,9 +16,17 @@ const CHART_SCRIPT: &str = include_str!("../../../assets/page/uplot/uPlot.iife.m
 const SCRIPT: &str = include_str!("../../../assets/page/page.js");
 const SPACE_LIBRARY: &str = include_str!("../../../assets/page/three/three.iife.min.js");
 const SPACE_SCRIPT: &str = include_str!("../../../assets/page/drawing.js");
-/// Nothing may be asked for over a network.
-const POLICY: &str =
-    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
+/// Letters that are encoded in a picture's address. Its images are in base64, whose letters stay, so that it does not grow by much.
+const WITHIN_DATA: &AsciiSet = &NON_ALPHANUMERIC
+    .remove(b'-')
+    .remove(b'_')
+    .remove(b'.')
+    .remove(b'/')
+    .remove(b'+')
+    .remove(b'=')
+    .remove(b',')
+    .remove(b':')
+    .remove(b';');
 /// Numbers on a page at most: four bytes and a third of text each, of which a report of a run has half in use, so that it stays below 1.5 MB.
 const MOST_NUMBERS: usize = 240_000;
 /// Numbers that small charts keep beside large ones: of all charts, and of one at most.
@@ -46,12 +56,17 @@ pub fn html(page: &Document<'_>) -> String {
         Tone::Open => "verdict open",
         Tone::Bad => "verdict bad",
     };
+    let in_space = page.sections.iter().any(|part| in_space(&part.blocks));
+    let mut scripts = vec![CHART_SCRIPT, SCRIPT];
+    if in_space {
+        scripts.extend([SPACE_LIBRARY, SPACE_SCRIPT]);
+    }
     markup! {
         (DOCTYPE)
         html lang="en" {
             head {
                 meta charset="utf-8";
-                meta http-equiv="Content-Security-Policy" content=(POLICY);
+                meta http-equiv="Content-Security-Policy" content=(policy::of(&scripts));
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 title { (page.title) }
                 link rel="icon" href="data:,";
@@ -76,7 +91,7 @@ pub fn html(page: &Document<'_>) -> String {
                 footer { (page.footer) }
                 script { (PreEscaped(CHART_SCRIPT)) }
                 script { (PreEscaped(SCRIPT)) }
-                @if page.sections.iter().any(|section| in_space(&section.blocks)) {
+                @if in_space {
                     script #space-library type="application/gzip" { (PreEscaped(packed::gzip(SPACE_LIBRARY.as_bytes()))) }
                     script { (PreEscaped(SPACE_SCRIPT)) }
                 }
@@ -133,7 +148,7 @@ fn block(block_of: &Block<'_>, budget: &Budget) -> Markup {
                 (sketches(instead))
                 script type="application/json" { (PreEscaped(within_script(&json!(drawing)))) }
             },
-            Block::File(name, words) => p { a href=(name) { (name) } ": " (words) },
+            Block::File(name, words) => p { a href=(address(name)) { (name) } ": " (words) },
             Block::Folded(summary, blocks) => details {
                 summary { (summary) }
                 @for one in blocks { (block(one, budget)) }
@@ -148,13 +163,21 @@ fn nothing_happened(panel: &Panel<'_>) -> bool {
     values.all(|value| *value == 0.0 || value.is_nan())
 }
 
-// Drawn by src/drawing, whose texts are its own.
+/// Pictures as images: in one, whoever drew it, no script runs, nothing is fetched, and nothing reaches the page.
 fn sketches(all: &[(String, String)]) -> Markup {
     markup! {
         div.sketches { @for (words, svg) in all {
-            figure { (PreEscaped(svg)) figcaption { (words) } }
+            figure { img src=(picture(svg)) alt=(first_sentence(words)); figcaption { (words) } }
         } }
     }
+}
+
+/// An SVG document as an address.
+fn picture(svg: &str) -> String {
+    format!(
+        "data:image/svg+xml,{}",
+        utf8_percent_encode(svg, WITHIN_DATA)
+    )
 }
 
 /// Data in a script, within which `</script>` would end it, and `<!--<script>` hide its end.
@@ -204,7 +227,7 @@ fn table(table: &Table) -> Markup {
                     Cell::Number(number) => td class=[numeric(index)] data-key=[key(cell)] { (number.with_unit()) },
                     Cell::Verdict(text, good) => td class={ @if *good { "good " } @else { "bad " } (numeric(index).unwrap_or_default()) } { (text) },
                     Cell::Hash(text) => td.hash { (text) },
-                    Cell::Link(text, target) => td { a href=(target) { (text) } },
+                    Cell::Link(text, target) => td { a href=(address(target)) { (text) } },
                     Cell::Interval(ends) => td { (interval(*ends)) },
                 }
             } } } }
@@ -317,6 +340,32 @@ mod tests {
         let fetched = ["src=\"http", "href=\"http", "url(http", "@import"];
         assert!(fetched.iter().all(|way| !text.contains(way)));
         assert_eq!(text, html(&page));
+    }
+
+    #[test]
+    fn a_picture_is_an_image_and_a_name_no_command() {
+        let svg = "<svg onload=\"alert(1)\"><script>alert(2)</script></svg>";
+        let pictures = || vec![("a \"b\" <i>".to_owned(), svg.to_owned())];
+        let drawing = crate::document::Drawing::default();
+        let link = Cell::Link("x".to_owned(), "javascript:alert(3)".to_owned());
+        let blocks = vec![
+            Block::Sketches(pictures()),
+            Block::InSpace(&drawing, pictures()),
+            Block::Table(Table::new("", Column::list("a"), vec![vec![link]])),
+            Block::File("//a.example/x?y#z".to_owned(), String::new()),
+        ];
+        let text = html(&Document {
+            sections: vec![Section::new("All", blocks)],
+            ..Document::default()
+        });
+        assert_eq!(text.matches("<svg").count(), 0);
+        let (_, image) = text.split_once("src=\"data:image/svg+xml,").unwrap();
+        let (data, _) = image.split_once('"').unwrap();
+        let decoded = percent_encoding::percent_decode_str(data).decode_utf8();
+        assert_eq!(decoded.unwrap(), svg);
+        assert!(text.contains("alt=\"a &quot;b&quot; &lt;i&gt;\""));
+        assert!(text.contains("href=\"javascript%3Aalert%283%29\""));
+        assert!(text.contains("href=\"/a.example/x%3Fy%23z\""));
     }
 
     #[test]

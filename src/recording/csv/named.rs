@@ -42,10 +42,10 @@ pub fn read_named(path: &Path, names: &[&str]) -> Result<NamedColumns, Recording
             .iter()
             .position(|column| column == *name)
             .ok_or_else(|| {
-                let held: Vec<&str> = header.iter().collect();
+                // Not what is there: a case from elsewhere may name any file of this machine.
                 let reason = format!(
-                    "there is no column `{name}`, expected it beside {}",
-                    held.join(", ")
+                    "there is no column `{name}` among the {} of its first line, expected one of this name",
+                    header.len()
                 );
                 RecordingError::read(path, reason)
             })
