@@ -30,6 +30,7 @@ pub fn raise(megabytes: u64) {
 /// Bytes as a message has them.
 pub fn megabytes(bytes: u64) -> String {
     match bytes as f64 / MB as f64 {
+        least if least < 0.1 => format!("{:.1} kB", 1e3 * least),
         few if few < 10.0 => format!("{few:.1} MB"),
         many => format!("{many:.0} MB"),
     }

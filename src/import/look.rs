@@ -34,6 +34,9 @@ mod write;
 pub use seen::Draft;
 use seen::{Cells, Looked};
 
+/// Columns of a log that are looked at, at most.
+const MOST_COLUMNS: usize = 4096;
+
 /// Drafts a map for logs. Those that are alike make a recording each; those that are not are taken to be parts of one.
 ///
 /// # Errors
@@ -41,7 +44,14 @@ use seen::{Cells, Looked};
 pub fn draft(title: &str, paths: &[PathBuf]) -> Result<Draft, ImportError> {
     let mut kinds: Vec<(Looked, Vec<PathBuf>)> = Vec::new();
     for path in paths {
-        let looked = look(path)?;
+        let mut looked = look(path)?;
+        let count = looked.columns.len();
+        if count > MOST_COLUMNS {
+            looked.columns.truncate(MOST_COLUMNS);
+            looked.notes.push(format!(
+                "Of its {count} columns the first {MOST_COLUMNS} were looked at."
+            ));
+        }
         match kinds.iter_mut().find(|(kind, _)| kind.is_like(&looked)) {
             Some((kind, alike)) => {
                 alike.push(path.clone());

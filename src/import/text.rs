@@ -6,7 +6,7 @@ use super::encoding::{DetectedEncoding, decode};
 use super::error::ImportError;
 use super::map::Separator;
 use super::packed::text_bytes;
-use crate::file::Limit;
+use crate::file::{Limit, megabytes};
 
 mod columns;
 mod reading;
@@ -17,8 +17,9 @@ pub(super) use columns::elements;
 pub(super) use record::Record;
 pub(super) use rows::{read, read_content};
 
-/// Fields of a row, at most.
+/// Fields of a row, and bytes of a line, at most.
 const MOST_FIELDS: usize = 1 << 16;
+const LONGEST: usize = 1_000_000;
 
 /// The lines of a text, those before its rows apart.
 pub(super) struct Sheet {
@@ -59,17 +60,32 @@ pub(super) fn content(
 ) -> Result<(String, DetectedEncoding), ImportError> {
     let bytes = text_bytes(path, limit)?;
     let (text, detected) = decode(path, bytes, encoding)?;
-    if !text.contains('\r') {
-        return Ok((text, detected));
+    let text = ended_alike(text);
+    let is_long = |line: &str| line.len() > LONGEST;
+    if let Some(line) = text.split('\n').position(is_long) {
+        return Err(ImportError::Read {
+            file: path.to_owned(),
+            cause: format!(
+                "line {} has more than {}, expected rows of a log",
+                line + 1,
+                megabytes(LONGEST as u64)
+            ),
+        });
     }
-    // Of a line that ends with both, the reader counts the end to the next one.
+    Ok((text, detected))
+}
+
+/// A text with its lines ended alike. Of a line that ends with two marks, the reader counts the end to the next one.
+fn ended_alike(text: String) -> String {
+    if !text.contains('\r') {
+        return text;
+    }
     let text = text.replace("\r\n", "\n");
-    let text = if text.contains('\n') {
+    if text.contains('\n') {
         text
     } else {
         text.replace('\r', "\n")
-    };
-    Ok((text, detected))
+    }
 }
 
 /// The fields of one line.

@@ -14,7 +14,7 @@ use crate::import::error::ImportError;
 use crate::import::log::EPOCH;
 
 /// Fields of a bag, frames of a field and remarks that are kept, at most.
-const MOST_FIELDS: usize = 20_000;
+const MOST_FIELDS: usize = 4096;
 const MOST_FRAMES: usize = 64;
 const MOST_NOTES: usize = 20;
 
@@ -82,11 +82,15 @@ pub(in crate::import) fn glance(path: &Path, limit: Limit) -> Result<Glance, Imp
         notes.push(format!("and {more} more"));
     }
     let mut left = MOST_FIELDS;
+    let names = topics.iter().enumerate();
+    let places: HashMap<String, usize> = names
+        .map(|(place, own)| (own.name.clone(), place))
+        .collect();
     let stamped = !topics.is_empty() && topics.iter().all(|topic| topic.stamp.is_some());
     let (mut zero_stamps, mut latest) = ([0, 0], 0);
     stores.visit(|message| -> Result<(), ImportError> {
-        let of_message = |topic: &&mut Topic| topic.name == message.there.topic;
-        let Some(topic) = topics.iter_mut().find(of_message) else {
+        let place = places.get(&message.there.topic);
+        let Some(topic) = place.and_then(|place| topics.get_mut(*place)) else {
             return Ok(());
         };
         // What does not fit its definition is reported when it is imported.

@@ -2,13 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
-use yaml_rust2::{Yaml, YamlLoader};
+use yaml_rust2::parser::{Event, Parser};
+
+use crate::file::{guarded, read_up_to};
 
 use crate::import::packed::plain_name;
 
 /// Name of the file, and bytes of it that are read at most.
 const NAME: &str = "metadata.yaml";
-const LARGEST: u64 = 1 << 24;
+const LARGEST: u64 = 1 << 21;
+/// The table that is read, and how deep.
+const ABOUT: &str = "rosbag2_bagfile_information";
+const DEPTH: usize = 3;
 
 /// Files and messages of a bag.
 pub(super) struct Listed {
@@ -25,33 +30,30 @@ impl Listed {
     /// It cannot be read.
     pub fn of(folder: &Path) -> Result<Option<Self>, String> {
         let path = folder.join(NAME);
-        match std::fs::metadata(&path) {
-            Err(_) => return Ok(None),
-            Ok(about) if about.len() > LARGEST => return Err("it is too large".to_owned()),
-            Ok(_) => {}
+        if !path.exists() {
+            return Ok(None);
         }
-        let text = crate::file::read_text(&path).map_err(|cause| cause.to_string())?;
+        let bytes = read_up_to(&path, LARGEST).map_err(|cause| cause.to_string())?;
+        let text = String::from_utf8(bytes).map_err(|cause| cause.to_string())?;
         Self::parse(&text)
     }
 
     fn parse(text: &str) -> Result<Option<Self>, String> {
-        let documents = YamlLoader::load_from_str(text).map_err(|cause| cause.to_string())?;
-        let Some(document) = documents.first() else {
-            return Ok(None);
+        let found = guarded(|| scalars(text)).and_then(|found| found)?;
+        let of = |path: &[&str]| {
+            let own = found.iter().filter(move |(own, _)| own == path);
+            own.map(|(_, value)| value.as_str()).collect::<Vec<_>>()
         };
-        let about = &document["rosbag2_bagfile_information"];
-        let paths = about["relative_file_paths"].as_vec();
         // Earlier versions name the folder too.
-        let name = |path: &Yaml| {
-            let name = Path::new(path.as_str()?).file_name()?;
+        let name = |path: &&str| {
+            let name = Path::new(*path).file_name()?;
             Some(name.to_string_lossy().into_owned())
         };
-        let files: Vec<String> = paths.into_iter().flatten().filter_map(name).collect();
-        let messages = about["message_count"].as_i64();
-        Ok((!files.is_empty()).then_some(Self {
-            files,
-            messages: messages.and_then(|count| u64::try_from(count).ok()),
-        }))
+        let paths = of(&[ABOUT, "relative_file_paths", ""]);
+        let files: Vec<String> = paths.iter().filter_map(name).collect();
+        let count = of(&[ABOUT, "message_count"]);
+        let messages = count.first().and_then(|count| count.parse().ok());
+        Ok((!files.is_empty()).then_some(Self { files, messages }))
     }
 
     /// Files that are named here, in the order of the list, and others. One may have been packed or unpacked since.
@@ -69,6 +71,65 @@ impl Listed {
     pub fn missing(&self, files: &[PathBuf]) -> Vec<String> {
         let is_gone = |name: &&String| !files.iter().any(|file| is_same(name, file));
         self.files.iter().filter(is_gone).cloned().collect()
+    }
+}
+
+/// Texts and numbers of the first document with the keys that lead to them, of lists empty ones, as deep as they are wanted. What stands once and is meant
+/// many times is not followed, and nothing is kept in one another.
+fn scalars(text: &str) -> Result<Vec<(Vec<String>, String)>, String> {
+    let mut parser = Parser::new_from_str(text);
+    let (mut path, mut found): (Vec<Place>, Vec<(Vec<String>, String)>) = (Vec::new(), Vec::new());
+    loop {
+        let (event, _) = parser.next_token().map_err(|cause| cause.to_string())?;
+        let value = match event {
+            Event::DocumentEnd | Event::StreamEnd => return Ok(found),
+            Event::SequenceStart(..) => {
+                path.push(Place::InList);
+                continue;
+            }
+            Event::MappingStart(..) => {
+                path.push(Place::BeforeKey);
+                continue;
+            }
+            Event::SequenceEnd | Event::MappingEnd => {
+                path.pop();
+                None
+            }
+            Event::Scalar(value, ..) => Some(value),
+            Event::Alias(_) => None,
+            Event::Nothing | Event::StreamStart | Event::DocumentStart => continue,
+        };
+        match (path.last_mut(), value) {
+            // What stands in place of a key may be anything.
+            (Some(place @ Place::BeforeKey), key) => {
+                *place = Place::Behind(key.unwrap_or_default());
+            }
+            (last, value) => {
+                let is_value = matches!(last, Some(Place::Behind(_)));
+                if let Some(value) = value.filter(|_| path.len() <= DEPTH) {
+                    found.push((path.iter().map(Place::key).collect(), value));
+                }
+                if let Some(place) = path.last_mut().filter(|_| is_value) {
+                    *place = Place::BeforeKey;
+                }
+            }
+        }
+    }
+}
+
+/// Where a text is read.
+enum Place {
+    InList,
+    BeforeKey,
+    Behind(String),
+}
+
+impl Place {
+    fn key(&self) -> String {
+        match self {
+            Self::Behind(key) => key.clone(),
+            Self::InList | Self::BeforeKey => String::new(),
+        }
     }
 }
 

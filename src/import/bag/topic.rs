@@ -169,10 +169,11 @@ fn field_of(
             let found = format!("no list with a number for each joint in {topic}");
             let lists = definition.lists();
             let lists: Vec<String> = lists.iter().map(|list| format!("{topic}.{list}")).collect();
-            refuse(
-                found,
-                format!("one of {}, without an index", lists.join(", ")),
-            )
+            let expected = match &lists[..] {
+                [] => "a topic whose messages hold one".to_owned(),
+                lists => format!("one of {}, without an index", lists.join(", ")),
+            };
+            refuse(found, expected)
         })?;
         return Ok(element);
     }

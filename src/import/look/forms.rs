@@ -11,6 +11,7 @@ use crate::import::error::ImportError;
 use crate::import::map::{Column, Pressure};
 use crate::import::units::named;
 use crate::import::{bag, mat_log, parquet_log, spreadsheet, stamps, tdms_log};
+use crate::recording::RecordingError;
 use crate::recording::table::{self, Table};
 
 fn form(name: &str, why: &str) -> Vec<Line> {
@@ -25,11 +26,15 @@ fn form(name: &str, why: &str) -> Vec<Line> {
 pub(super) fn parquet(path: &Path) -> Result<Looked, ImportError> {
     let names = Table::open(path, Limit::default())?.names();
     let robot = lerobot::feature_names(path);
-    let mut columns = Vec::new();
+    let (mut columns, mut unread) = (Vec::new(), None);
     for (place, name) in names.iter().enumerate() {
         // A column that cannot be read is none to choose.
-        let Ok(read) = Table::open(path, Limit::default())?.read(&[place]) else {
-            continue;
+        let read = match Table::open(path, Limit::default())?.read(&[place]) {
+            Ok(read) => read,
+            Err(error) => {
+                unread.get_or_insert(error);
+                continue;
+            }
         };
         let Some(cells) = read.into_iter().next().map(cells) else {
             continue;
@@ -46,7 +51,11 @@ pub(super) fn parquet(path: &Path) -> Result<Looked, ImportError> {
             cells,
         });
     }
-    if columns.iter().all(|column| column.cells == Cells::Other) {
+    let holds_none = columns.iter().all(|column| column.cells == Cells::Other);
+    if let (true, Some(error @ RecordingError::Read { .. })) = (holds_none, unread) {
+        return Err(error.into());
+    }
+    if holds_none {
         let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
         return Err(ImportError::Read {
             file: path.to_owned(),
