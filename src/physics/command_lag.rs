@@ -8,6 +8,9 @@
 
 use std::f64::consts::TAU;
 
+/// Rate times step beyond which a faster lag is the same to all that a step shows, and its acceleration nothing but rounding [rad].
+const FASTEST: f64 = 100.0;
+
 /// Response of one axis to its command.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CommandLag {
@@ -32,7 +35,7 @@ impl CommandLag {
 
     /// Advances by `dt` [s] to a command [rad]; gives the acceleration [rad/s2] then.
     pub fn advance(&mut self, command: f64, dt: f64) -> f64 {
-        let w = self.rate;
+        let w = self.rate.min(FASTEST / dt);
         let slope = (command - self.command) / dt;
         // Against the steady answer to a ramp, u - 2 slope/w, the error decays as (a + b t) exp(-w t).
         let behind = self.command - 2.0 * slope / w;
@@ -49,6 +52,23 @@ impl CommandLag {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn however_fast_a_lag_is_it_follows_with_an_acceleration_that_is_one() {
+        for bandwidth in [1e3, 1e6, 1e12, 1e300] {
+            let mut lag = CommandLag::at_rest(bandwidth, 0.0);
+            for step in 1..=200 {
+                let time = f64::from(step) * 1e-3;
+                let acceleration = lag.advance(0.5 * time * time, 1e-3);
+                assert!(
+                    (lag.position - 0.5 * time * time).abs() < 1e-4,
+                    "{bandwidth}"
+                );
+                assert!((lag.velocity - time).abs() < 2e-3, "{bandwidth}");
+                assert!(acceleration.abs() < 2.0, "{bandwidth}: {acceleration}");
+            }
+        }
+    }
 
     #[test]
     fn a_ramp_is_followed_two_over_w_behind() {
