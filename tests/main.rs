@@ -51,6 +51,7 @@ mod pointed;
 mod postures;
 mod predict;
 mod program;
+mod readers;
 mod real_robots;
 mod recorded_arm;
 mod recorded_cell;
