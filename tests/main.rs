@@ -52,6 +52,7 @@ mod pointed;
 mod postures;
 mod predict;
 mod program;
+mod readers;
 mod real_robots;
 mod recorded_arm;
 mod recorded_cell;

@@ -160,8 +160,9 @@ impl Expression {
         check_extent(text)?;
         let mut steps = whole.parse(LocatingSlice::new(text)).map_err(|error| {
             let at = error.offset().min(text.len());
+            let letter = text.get(at..).and_then(|rest| rest.chars().next());
             ExpressionError {
-                span: at..(at + 1).min(text.len()).max(at),
+                span: at..at + letter.map_or(0, char::len_utf8),
                 reason: "expected a number, a name, a function such as max(..) or a bracket, joined by + - * / ^ < >".to_owned(),
             }
         })?;
@@ -635,6 +636,14 @@ mod tests {
             assert!(error.reason.contains(said), "{text}: {error}");
             let place = text[error.span.start..].starts_with(part);
             assert!(place, "{text}: {:?}", error.span);
+        }
+    }
+
+    #[test]
+    fn a_letter_of_several_bytes_is_named_whole() {
+        for (text, expected) in [("v² * c", "²"), ("t - 1ü", "ü"), ("2 * ", "")] {
+            let span = Expression::read(text, &NAMES).unwrap_err().span;
+            assert_eq!(text.get(span), Some(expected), "{text}");
         }
     }
 
