@@ -5,6 +5,7 @@
 //! the signals that the simulated cell writes.
 
 pub mod atomic;
+pub mod claim;
 pub mod csv;
 mod error;
 pub mod gaps;
@@ -14,12 +15,15 @@ pub mod long_column;
 pub mod long_table;
 #[cfg(feature = "parquet")]
 pub mod parquet;
+mod placing;
 pub mod provenance;
 pub mod samples;
 pub mod schema;
+pub mod seal;
 #[cfg(feature = "parquet")]
 pub mod table;
 pub mod thousandfold;
+mod unfinished;
 
 pub use crate::unit::SiUnit as Unit;
 pub use error::RecordingError;
