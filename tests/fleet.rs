@@ -26,7 +26,7 @@ fn recipe(seed: u64, effect: Option<(&'static str, f64)>) -> Recipe {
 }
 
 /// Records a device on a day, with a leak of a share of the largest that is plausible.
-fn record(folder: &Path, device: u64, day: u64, leak: f64) {
+pub fn record(folder: &Path, device: u64, day: u64, leak: f64) {
     let effect = (leak > 0.0).then_some(("external_leakage", leak));
     let session = recipe(4, effect)
         .session(device, 1 + 100 * device + day)

@@ -99,7 +99,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<ExitCode, AppError> {
         let drawing = report.drawing.as_ref().ok_or_else(|| AppError::NoTool {
             file: arguments.file.display().to_string(),
         })?;
-        prepare_file(draw, "--draw", OverwritePolicy::of(arguments.force))?;
+        let _claim = prepare_file(draw, "--draw", OverwritePolicy::of(arguments.force))?;
         write_text(draw, drawing)?;
     }
     if arguments.json {

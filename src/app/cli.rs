@@ -17,6 +17,7 @@ use super::{help, progress};
 #[command(
     name = "idc",
     version,
+    long_version = crate::recording::provenance::BUILD,
     max_term_width = 100,
     after_help = help::PROGRAM
 )]

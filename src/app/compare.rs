@@ -65,7 +65,7 @@ pub(super) fn run(arguments: &CompareArguments) -> Result<ExitCode, AppError> {
                 file: out.display().to_string(),
             });
         }
-        prepare_file(out, "--out", OverwritePolicy::of(arguments.force))?;
+        let _claim = prepare_file(out, "--out", OverwritePolicy::of(arguments.force))?;
         write_text(out, &html(&compared.document()))?;
     }
     if arguments.json {

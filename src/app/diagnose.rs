@@ -132,16 +132,6 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
         };
         return all::report(&outcomes, &shared, &out, arguments.quiet, arguments.json);
     }
-    if policy == OverwritePolicy::Keep
-        && let Some(answer) = one::complete(&out)
-    {
-        if arguments.json {
-            say(&answer.text()?)?;
-        } else if !arguments.quiet {
-            say(&format!("{} holds a diagnosis already\n", shown_path(&out)))?;
-        }
-        return Ok(ExitCode::Done);
-    }
     let silent = arguments.quiet || arguments.json || arguments.verbose;
     let _interruptible = Interruptible::of_one("diagnosis", &out);
     let line = StagedLine::new(&stages::first(), silent);
@@ -152,6 +142,16 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
         &out,
         policy,
     )?;
+    if policy == OverwritePolicy::Keep {
+        match prepared.standing()? {
+            Some(Ok(standing)) => {
+                line.end();
+                return show_standing(arguments, &out, &standing);
+            }
+            Some(Err(why)) => eprintln!("note: {}: {why}; diagnosed again", out.display()),
+            None => (),
+        }
+    }
     let mut stages = Stages::default();
     line.tell(Stages::begun(), None);
     let finished = prepared.run(&mut |progress: &Progress<'_>| {
@@ -172,6 +172,19 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
             shown_path(&out),
             finished.names.join(", ")
         ))?;
+    }
+    Ok(ExitCode::Done)
+}
+
+fn show_standing(
+    arguments: &DiagnoseArguments,
+    out: &std::path::Path,
+    standing: &one::Standing,
+) -> Result<ExitCode, AppError> {
+    if arguments.json {
+        say(&standing.document)?;
+    } else if !arguments.quiet {
+        say(&format!("{} holds a diagnosis already\n", out.display()))?;
     }
     Ok(ExitCode::Done)
 }

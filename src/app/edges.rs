@@ -77,7 +77,7 @@ pub(super) fn list(arguments: &EdgesArguments) -> Result<ExitCode, AppError> {
     let list = list_edges(&mesh, &search);
     spinner.finish_and_clear();
     if let Some(out) = &arguments.out {
-        prepare_file(out, "--out", OverwritePolicy::of(arguments.force))?;
+        let _claim = prepare_file(out, "--out", OverwritePolicy::of(arguments.force))?;
         write_text(
             out,
             &page::page((&arguments.mesh, unit, angle), &mesh, &list),
@@ -103,7 +103,7 @@ fn refused(
     fault: MeshFault,
 ) -> Result<ExitCode, AppError> {
     if let (Some(out), MeshFault::NotClosed { edges }) = (&arguments.out, &fault) {
-        prepare_file(out, "--out", OverwritePolicy::of(arguments.force))?;
+        let _claim = prepare_file(out, "--out", OverwritePolicy::of(arguments.force))?;
         let page = faults::page(&arguments.mesh, file, unit.length(), (&fault, edges));
         write_text(out, &page)?;
         if !arguments.json {

@@ -100,7 +100,7 @@ pub(super) fn run(arguments: &EffectsArguments) -> Result<ExitCode, AppError> {
     let effect = named(name)?;
     let stage = Stage::new(&scene::of(effect).scene)?;
     if let Some(file) = &arguments.out {
-        prepare_file(file, "--out", policy)?;
+        let _claim = prepare_file(file, "--out", policy)?;
         write_text(file, &picture(effect, &stage)?.svg)?;
     }
     let explained = Explained::new(effect, &stage);
@@ -117,7 +117,7 @@ fn of_arm(
     let stage = ArmStage::new()?;
     let explained = ArmExplained::new(effect, &stage, page::PICTURES)?;
     if let Some(file) = &arguments.out {
-        prepare_file(file, "--out", policy)?;
+        let _claim = prepare_file(file, "--out", policy)?;
         let drawn = picture_of_arm(effect, &stage, explained.title())?;
         write_text(file, &drawn.svg)?;
     }

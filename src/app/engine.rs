@@ -8,7 +8,11 @@ use super::error::AppError;
 use super::interrupt::Interruptible;
 use super::progress;
 use super::terminal::say_aside;
-use crate::tasks::{Dask, Engine, Plan, Store, Task, TaskError, TaskMessage, dask, local};
+use crate::quantity::counted;
+use crate::recording::provenance::BUILD;
+use crate::tasks::{
+    Dask, Engine, Made, Plan, Store, Task, TaskError, TaskMessage, Unfit, dask, local,
+};
 
 /// The plan of a sweep or a fleet, in its folder.
 pub(super) const PLAN: &str = "plan.jsonl";
@@ -56,6 +60,7 @@ impl EngineArguments {
         let count = opened.head.tasks;
         let store = Store::of(plan);
         store.make()?;
+        tell_unfit(&store.vet(Plan::open(plan)?)?, store.path());
         let bar = progress::tasks(count, tasks.word, tasks.quiet);
         let out = plan.parent().unwrap_or(Path::new("."));
         let interruptible = Interruptible::of_many(count, tasks.are, out);
@@ -77,7 +82,14 @@ impl EngineArguments {
             engine => dask(&self.dask(engine)?, &full(plan)?, count, &report),
         };
         bar.finish_and_clear();
-        Ok(done?)
+        match done {
+            // What counts is what stands, whatever an engine has heard of it.
+            Err(TaskError::Failed { of, first, .. }) => match store.missing(Plan::open(plan)?)? {
+                0 => Ok(()),
+                failed => Err(TaskError::Failed { failed, of, first }.into()),
+            },
+            done => Ok(done?),
+        }
     }
 
     fn dask(&self, engine: &Engine) -> Result<Dask, AppError> {
@@ -86,9 +98,39 @@ impl EngineArguments {
             engine: engine.clone(),
             python: self.python.clone(),
             program: self.program.clone().map_or_else(here, Ok)?,
-            version: concat!("idc ", env!("CARGO_PKG_VERSION")).to_owned(),
+            version: format!("idc {BUILD}"),
             carry: self.carry,
         })
+    }
+}
+
+/// Says which results were not what was written, and are done again.
+pub(super) fn tell_unfit(unfit: &[Unfit], folder: &Path) {
+    /// Names that are told, and digits of each.
+    const TOLD: usize = 5;
+    const DIGITS: usize = 12;
+    let told = unfit.iter().take(TOLD).map(|one| {
+        let short = one.id.get(..DIGITS).unwrap_or(&one.id);
+        format!("{short}: {}", one.why)
+    });
+    let told = told.collect::<Vec<_>>().join("; ");
+    let more = match unfit.len().saturating_sub(TOLD) {
+        0 => String::new(),
+        more => format!("; and {more} more"),
+    };
+    if !unfit.is_empty() {
+        let count = counted(unfit.len(), "result");
+        let folder = folder.display();
+        eprintln!("note: done again, as not what was written: {count} in {folder} ({told}{more})");
+    }
+}
+
+/// Says what has changed since an earlier plan was made.
+pub(super) fn tell_changed(before: Option<&Made>, plan: &Path) {
+    let changed = before.and_then(|before| before.changed(&Made::of(plan)?));
+    if let Some(changed) = changed {
+        let plan = plan.display();
+        eprintln!("note: since {plan} was last made, {changed}: what comes of it is done again");
     }
 }
 

@@ -150,6 +150,24 @@ pub enum AppError {
         /// A file that stands in it.
         name: String,
     },
+    /// A folder that another process is writing.
+    #[error(
+        "another idc is writing into {folder}; expected another folder (--out), or that one to end first"
+    )]
+    FolderClaimed {
+        /// The folder.
+        folder: String,
+    },
+    /// A file that another process is writing.
+    #[error(
+        "another idc is writing {file}; expected another name ({option}), or that one to end first"
+    )]
+    FileClaimed {
+        /// The file.
+        file: String,
+        /// The option that names another.
+        option: &'static str,
+    },
     /// A file that describes nothing.
     #[error(
         "{file}: expected a scenario, a rig file, an import map, a study or a device model (a .toml), or a folder with a rig.toml; idc import reads logs"

@@ -9,11 +9,13 @@ use super::space;
 use crate::drawing;
 use crate::metrics::FOLLOW_PHASE;
 use crate::recording::atomic::{UnfinishedFolder, make_folder, write_text};
+use crate::recording::claim::{Claim, clear_beside, clear_unfinished};
 use crate::recording::parquet::write_parquet;
 use crate::recording::provenance::Provenance;
 use crate::recording::{Recording, RecordingError};
 use crate::report::{SUMMARY, Sketches};
 use crate::scene::Scene;
+use crate::tasks::TASKS;
 
 pub(super) const RECORDING: &str = "recording.rrd";
 pub(super) const SAMPLES: &str = "samples.parquet";
@@ -28,6 +30,8 @@ pub(super) const LEAN: &str = "lean.svg";
 pub(super) const DRAWING: &str = "drawing.json";
 /// The scenario as `--set` made it.
 pub(super) const VARIED: &str = "varied.toml";
+/// What the seal of summary.json says that it is of.
+pub(super) const RUN: &str = "run";
 /// All that a run may write.
 pub(super) const RUN_NAMES: [&str; 11] = [
     RECORDING,
@@ -81,40 +85,97 @@ pub(super) fn is_same(one: &Path, other: &Path) -> bool {
     }
 }
 
-/// Refuses a file that stands, or cannot stand, where one is to be written, then makes its folder; `option` names another.
+/// Refuses a file that stands, or cannot stand, where one is to be written, makes its folder and claims the file for this process.
 pub(super) fn prepare_file(
     path: &Path,
     option: &'static str,
     policy: OverwritePolicy,
-) -> Result<(), AppError> {
+) -> Result<Option<Claim>, AppError> {
     let refuse = |reason: &dyn std::fmt::Display| AppError::OutputFile {
         file: path.display().to_string(),
         option,
         reason: reason.to_string(),
     };
+    let exists = || match policy == OverwritePolicy::Refuse && path.exists() {
+        true => Err(AppError::FileExists {
+            file: path.display().to_string(),
+            option,
+        }),
+        false => Ok(()),
+    };
     if path.is_dir() {
         return Err(refuse(&"there is a folder of that name"));
     }
-    if policy == OverwritePolicy::Refuse && path.exists() {
-        return Err(AppError::FileExists {
-            file: path.display().to_string(),
-            option,
-        });
+    exists()?;
+    let folder = match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    make_folder(folder).map_err(|error| refuse(&error))?;
+    let claim = match path.metadata() {
+        // A device or a pipe is nobody's.
+        Ok(found) if !found.is_file() => return Ok(None),
+        _ => Claim::of_file(path).map_err(|error| refuse(&error))?,
+    };
+    let claim = claim.ok_or_else(|| AppError::FileClaimed {
+        file: path.display().to_string(),
+        option,
+    })?;
+    // Another process may have written it, and ended, in between.
+    exists()?;
+    clear_unfinished(folder);
+    Ok(Some(claim))
+}
+
+/// The same of several files that one command writes. Of very many the first are claimed: a process holds no more files open.
+pub(super) fn prepare_files<P: AsRef<Path>>(
+    paths: &[P],
+    option: &'static str,
+    policy: OverwritePolicy,
+) -> Result<Vec<Claim>, AppError> {
+    const MOST: usize = 200;
+    let mut claims = Vec::new();
+    for path in paths {
+        let claim = prepare_file(path.as_ref(), option, policy)?;
+        claims.extend(claim.filter(|_| claims.len() < MOST));
     }
-    match path.parent() {
-        Some(folder) => make_folder(folder).map_err(|error| refuse(&error)),
-        None => Ok(()),
-    }
+    Ok(claims)
+}
+
+/// Makes a folder and claims it for this process.
+pub(super) fn claim_folder(path: &Path) -> Result<Claim, AppError> {
+    let refuse = |error: std::io::Error| AppError::OutputFolder {
+        folder: path.display().to_string(),
+        reason: error.to_string(),
+    };
+    make_folder(path).map_err(refuse)?;
+    let claim = Claim::of_folder(path).map_err(refuse)?;
+    claim.ok_or_else(|| AppError::FolderClaimed {
+        folder: path.display().to_string(),
+    })
 }
 
 /// A folder that was found to be writable before the run.
 pub(super) struct OutputFolder {
     path: PathBuf,
+    /// None where a folder above it is claimed.
+    _claim: Option<Claim>,
 }
 
 impl OutputFolder {
-    /// Makes the folder and tries it for files of these names, so that a long run does not end with nothing.
+    /// Makes and claims the folder and tries it for files of these names, so that a long run does not end with nothing.
     pub(super) fn prepare(
+        path: &Path,
+        names: &[&str],
+        policy: OverwritePolicy,
+    ) -> Result<Self, AppError> {
+        Self::check(path, names, policy)?;
+        let claim = claim_folder(path)?;
+        Self::within_claim(path, names, policy, Some(claim))
+    }
+
+    /// The same of a folder within one that this process has claimed.
+    pub(super) fn prepare_within(
         path: &Path,
         names: &[&str],
         policy: OverwritePolicy,
@@ -124,9 +185,23 @@ impl OutputFolder {
             folder: path.display().to_string(),
             reason: error.to_string(),
         })?;
+        Self::within_claim(path, names, policy, None)
+    }
+
+    fn within_claim(
+        path: &Path,
+        names: &[&str],
+        policy: OverwritePolicy,
+        claim: Option<Claim>,
+    ) -> Result<Self, AppError> {
+        // Another process may have written there, and ended, in between.
+        Self::check(path, names, policy)?;
+        clear_beside(path, &[TASKS]);
+        clear_unfinished(path);
         drop(UnfinishedFolder::within(path)?);
         Ok(Self {
             path: path.to_owned(),
+            _claim: claim,
         })
     }
 
@@ -214,33 +289,17 @@ impl OutputFolder {
                 names.push(name);
             }
         }
-        unfinished.finish(&names)?;
-        for other in RUN_NAMES.iter().filter(|name| !names.contains(name)) {
-            // That of another run would pass for one of this.
-            self.discard(other)?;
-        }
+        finish(unfinished, &RUN_NAMES, &names)?;
         Ok(names)
-    }
-
-    /// Removes a file that is not of this time, if it is there.
-    pub(super) fn discard(&self, name: &str) -> Result<(), AppError> {
-        match std::fs::remove_file(self.path.join(name)) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                Err(AppError::OutputFolder {
-                    folder: self.path.display().to_string(),
-                    reason: format!("the old {name} cannot be removed: {error}"),
-                })
-            }
-            _ => Ok(()),
-        }
     }
 
     /// Writes texts by name and returns their names.
     pub(super) fn write_texts(
         &self,
+        all: &[&str],
         files: &[(&'static str, &str)],
     ) -> Result<Vec<&'static str>, AppError> {
-        self.write_with(|folder| {
+        self.write_with(all, |folder| {
             for (name, text) in files {
                 write_text(&folder.join(name), text)?;
             }
@@ -248,16 +307,27 @@ impl OutputFolder {
         })
     }
 
-    /// Lets files be written into a folder of their own, and moves those that are named here, the last one last; returns their names.
+    /// Lets files be written into a folder of their own, and moves those that are named here, the last one last; returns their names. Others of `all` names go.
     pub(super) fn write_with(
         &self,
+        all: &[&str],
         write: impl FnOnce(&Path) -> Result<Vec<&'static str>, AppError>,
     ) -> Result<Vec<&'static str>, AppError> {
         let unfinished = UnfinishedFolder::within(&self.path)?;
         let names = write(unfinished.path())?;
-        unfinished.finish(&names)?;
+        finish(unfinished, all, &names)?;
         Ok(names)
     }
+}
+
+/// Puts files in their places. Others that a result of the kind can have would pass for some of this one, and go.
+fn finish(unfinished: UnfinishedFolder, all: &[&str], names: &[&str]) -> Result<(), AppError> {
+    let gone = all.iter().filter(|name| !names.contains(name));
+    let gone: Vec<&str> = gone.copied().collect();
+    // The numbers last: where they stand, the rest does.
+    let mut names = names.to_vec();
+    names.sort_by_key(|name| name.ends_with(".json") && *name != DRAWING);
+    Ok(unfinished.finish(&names, &gone, &[TASKS])?)
 }
 
 /// Where the results of a run come from: files by their paths as the scenario has them.

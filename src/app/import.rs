@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 
 use super::error::{AppError, ExitCode};
-use super::files::{OverwritePolicy, is_same, prepare_file};
+use super::files::{OverwritePolicy, is_same, prepare_files};
 use super::interrupt::Interruptible;
 use super::output::say;
 use super::progress;
@@ -82,9 +82,9 @@ pub(super) fn run(arguments: &ImportArguments) -> Result<ExitCode, AppError> {
     bar.finish_and_clear();
     drop(reading);
     check_destinations(&jobs)?;
-    for (path, _) in jobs.iter().flat_map(|job| &job.outs) {
-        prepare_file(path, "--out", OverwritePolicy::of(arguments.force))?;
-    }
+    let paths = jobs.iter().flat_map(|job| &job.outs).map(|(path, _)| path);
+    let paths: Vec<&PathBuf> = paths.collect();
+    let _claims = prepare_files(&paths, "--out", OverwritePolicy::of(arguments.force))?;
     let copies = copies(&jobs);
     let interruptible = arguments.out.as_ref().map(|out| {
         let (out, count) = (out.display().to_string(), jobs.len());

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use clap::{Args, Command};
 
 use super::error::{AppError, ExitCode};
-use super::files::{OverwritePolicy, prepare_file};
+use super::files::{OverwritePolicy, prepare_files};
 use super::output::say;
 use super::terminal::shown_path;
-use crate::recording::atomic::write_text;
+use crate::recording::atomic::write_all;
 
 /// For the help.
 pub(super) const COMPLETION_EXAMPLES: &str = "\
@@ -71,16 +71,11 @@ pub(super) fn man(arguments: &ManArguments, mut program: Command) -> Result<Exit
     };
     let mut pages = Vec::new();
     pages_of(&program, "idc", &mut pages)?;
-    for (name, _) in &pages {
-        prepare_file(
-            &folder.join(name),
-            "--out",
-            OverwritePolicy::of(arguments.force),
-        )?;
-    }
-    for (name, text) in &pages {
-        write_text(&folder.join(name), text)?;
-    }
+    let files = pages.iter().map(|(name, text)| (folder.join(name), text));
+    let files: Vec<(PathBuf, &String)> = files.collect();
+    let paths: Vec<&PathBuf> = files.iter().map(|(path, _)| path).collect();
+    let _claims = prepare_files(&paths, "--out", OverwritePolicy::of(arguments.force))?;
+    write_all(&files)?;
     say(&format!(
         "{} pages written to {}\n",
         pages.len(),

@@ -9,11 +9,11 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 
 use super::error::{AppError, ExitCode};
-use super::files::{OverwritePolicy, prepare_file};
+use super::files::{OverwritePolicy, prepare_files};
 use super::output::say;
 use crate::case::{POSTURES, RIG};
 use crate::import::{Draft, draft};
-use crate::recording::atomic::write_atomic;
+use crate::recording::atomic::write_all;
 use crate::scenario::removal_table::REMOVAL_TABLE;
 use crate::shell::word;
 use part::Files;
@@ -205,16 +205,12 @@ pub(super) fn run(arguments: &NewArguments) -> Result<ExitCode, AppError> {
     // All are looked at before the first is written. What stands there as it would be written can stay.
     let stays =
         |path: &Path, content: &[u8]| crate::file::read(path).is_ok_and(|old| old == content);
-    let mut written = Vec::new();
-    for (path, content) in &files {
-        if !stays(path, content) || *path == file {
-            prepare_file(path, "--out", OverwritePolicy::of(arguments.force))?;
-            written.push((path, content));
-        }
-    }
-    for (path, content) in &written {
-        write_atomic(path, |output| std::io::Write::write_all(output, content))?;
-    }
+    let written = files.iter();
+    let written = written.filter(|(path, content)| !stays(path, content) || *path == file);
+    let written: Vec<(&PathBuf, &Vec<u8>)> = written.map(|(path, own)| (path, own)).collect();
+    let paths: Vec<&PathBuf> = written.iter().map(|(path, _)| *path).collect();
+    let _claims = prepare_files(&paths, "--out", OverwritePolicy::of(arguments.force))?;
+    write_all(&written)?;
     let paths = written.iter().map(|(path, _)| path.display().to_string());
     let paths: Vec<String> = paths.collect();
     let next = match (&drafted, logs.first()) {

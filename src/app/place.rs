@@ -14,7 +14,7 @@ use super::progress;
 use crate::cell::Setup;
 use crate::document::{Block, Cell, Column, Document, Number, Section, Style, Table, Tone, text};
 use crate::place::{PlaceGrid, Possible, TriedPlace, best_places, footprints, svg, tried_places};
-use crate::recording::atomic::write_text;
+use crate::recording::atomic::write_all;
 use crate::scenario::load;
 use crate::shell::word;
 
@@ -127,9 +127,10 @@ pub(super) struct PlaceArguments {
 /// Tries all places.
 pub(super) fn run(arguments: &PlaceArguments) -> Result<ExitCode, AppError> {
     let policy = OverwritePolicy::of(arguments.force);
+    let mut claims = Vec::new();
     for (file, option) in [(&arguments.out, "--out"), (&arguments.csv, "--csv")] {
         if let Some(file) = file {
-            prepare_file(file, option, policy)?;
+            claims.extend(prepare_file(file, option, policy)?);
         }
     }
     let setup = Setup::load(load(&arguments.scenario)?)?;
@@ -148,15 +149,17 @@ pub(super) fn run(arguments: &PlaceArguments) -> Result<ExitCode, AppError> {
     let bar = progress::places(count, arguments.quiet || arguments.json);
     let tried = tried_places(&setup, &grid, &|| bar.inc(1));
     bar.finish_and_clear();
+    let mut files = Vec::new();
     if let Some(out) = &arguments.out {
         let robot = setup.scenario.arm.world_from_base.translation;
         let bodies = footprints(&setup, best_places(&tried).into_iter().next());
         let picture = svg(&setup.scenario.title, &grid, &tried, (robot, part), &bodies);
-        write_text(out, &picture)?;
+        files.push((out, picture));
     }
     if let Some(csv) = &arguments.csv {
-        write_text(csv, &table(&tried))?;
+        files.push((csv, table(&tried)));
     }
+    write_all(&files)?;
     if arguments.json {
         say(&json(arguments, &tried))?;
     } else if !arguments.quiet {

@@ -8,7 +8,7 @@ use clap::Args;
 use serde_json::Value;
 
 use super::error::{AppError, ExitCode};
-use super::files::{OverwritePolicy, is_same, prepare_file};
+use super::files::{OverwritePolicy, is_same, prepare_files};
 use super::output::say;
 use super::progress;
 use super::terminal::shown_path;
@@ -24,7 +24,7 @@ use crate::diagnosis::recordings::recorded::{COLUMNS, recorded_of};
 use crate::flange::FittedFlange;
 use crate::plant::Channel;
 use crate::quantity::{counted, significant};
-use crate::recording::atomic::write_text;
+use crate::recording::atomic::write_all;
 use crate::recording::csv::columns_text;
 use crate::scenario::arm_file::{ArmFile, is_arm_file, load_arm_file};
 use crate::scenario::postures_file::is_postures_file;
@@ -90,12 +90,10 @@ pub(super) fn predict(arguments: &PredictArguments) -> Result<ExitCode, AppError
         spinner.finish_and_clear();
         made?
     };
-    for one in &made {
-        prepare_file(&one.out, "--out", OverwritePolicy::of(arguments.force))?;
-    }
-    for one in &made {
-        write_text(&one.out, &one.csv)?;
-    }
+    let files: Vec<(&PathBuf, &String)> = made.iter().map(|one| (&one.out, &one.csv)).collect();
+    let paths: Vec<&PathBuf> = files.iter().map(|(path, _)| *path).collect();
+    let _claims = prepare_files(&paths, "--out", OverwritePolicy::of(arguments.force))?;
+    write_all(&files)?;
     if arguments.json {
         let mut documents: Vec<Value> = made.into_iter().map(|one| one.document).collect();
         let document = match documents.len() {

@@ -7,7 +7,7 @@ use clap::Args;
 use clap::builder::PossibleValue;
 
 use super::error::{AppError, ExitCode};
-use super::files::{OutputFolder, OverwritePolicy, prepare_file};
+use super::files::{OutputFolder, OverwritePolicy, claim_folder, prepare_file};
 use super::interrupt::Interruptible;
 use super::output::say;
 use super::progress;
@@ -20,6 +20,7 @@ use crate::proof::{
 };
 use crate::quantity::counted;
 use crate::recording::atomic::{UnfinishedFolder, make_folder, write_text};
+use crate::recording::claim::clear_unfinished;
 
 /// The cases that come with the project, from its folder.
 const CASES: &str = "assets/proof/cases";
@@ -167,7 +168,7 @@ pub(super) fn run(arguments: &ProveArguments) -> Result<ExitCode, AppError> {
 fn run_prove(arguments: &ProveArguments) -> Result<ExitCode, AppError> {
     let jobs = jobs(arguments.jobs);
     let out = &arguments.folder();
-    let cases = prepare_proof(arguments)?;
+    let (cases, _folder) = prepare_proof(arguments)?;
     let beside = || cases.parent().unwrap_or(Path::new("")).join("sealed");
     let sealed = arguments.sealed.clone().unwrap_or_else(beside);
     let bar = progress::bar("proving", arguments.json);
@@ -239,11 +240,8 @@ fn run_sweep(arguments: &ProveArguments) -> Result<ExitCode, AppError> {
         "--out"
     };
     plan.check()?;
-    prepare_file(
-        &file,
-        option,
-        OverwritePolicy::of(arguments.force || asked.resume),
-    )?;
+    let policy = OverwritePolicy::of(arguments.force || asked.resume);
+    let _claims = (prepare_file(&file, option, policy)?, claim_folder(&out)?);
     let silent = asked.quiet || arguments.json;
     let bar = progress::bar("sweeping", silent);
     let interruptible = Interruptible::new({
@@ -328,6 +326,8 @@ pub(super) fn run_laboratory(arguments: &LaboratoryArguments) -> Result<ExitCode
             name: found.file_name().unwrap_or_default().display().to_string(),
         });
     }
+    let _claim = claim_folder(out)?;
+    clear_unfinished(out);
     let quiet = arguments.quiet || arguments.json;
     let plan = |count: u64, conditions: CaseConditions| DrawPlan {
         count,
@@ -390,7 +390,7 @@ fn make_cases(out: &Path, which: &Which<'_>, quiet: bool) -> Result<Vec<String>,
         make_folder(out.join(file).parent().unwrap_or(out)).map_err(cannot)?;
     }
     let names: Vec<&str> = files.iter().map(String::as_str).collect();
-    unfinished.finish(&names)?;
+    unfinished.finish(&names, &[], &[])?;
     Ok(made)
 }
 
@@ -421,7 +421,7 @@ fn note_files(folder: &Path, from: &Path, found: &mut Vec<String>) -> std::io::R
 }
 
 /// The cases to prove with. Refuses to prove into a folder that holds an answer to one of them, or cannot be written.
-fn prepare_proof(arguments: &ProveArguments) -> Result<PathBuf, AppError> {
+fn prepare_proof(arguments: &ProveArguments) -> Result<(PathBuf, OutputFolder), AppError> {
     let usual = || PathBuf::from(CASES);
     let there = arguments
         .cases
@@ -443,9 +443,9 @@ fn prepare_proof(arguments: &ProveArguments) -> Result<PathBuf, AppError> {
             });
         }
     }
-    OutputFolder::prepare(&arguments.folder(), &[], OverwritePolicy::Replace)?;
+    let folder = OutputFolder::prepare(&arguments.folder(), &[], OverwritePolicy::Replace)?;
     if let Some(cases) = there {
-        return Ok(cases);
+        return Ok((cases, folder));
     }
     let made = arguments.folder().join("laboratory");
     if !arguments.json {
@@ -455,7 +455,7 @@ fn prepare_proof(arguments: &ProveArguments) -> Result<PathBuf, AppError> {
         ));
     }
     make_cases(&made, &Which::Shipped(&arguments.only), arguments.json)?;
-    Ok(made.join("cases"))
+    Ok((made.join("cases"), folder))
 }
 
 /// Names of the project's cases, all or those that are asked for.

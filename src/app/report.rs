@@ -110,11 +110,14 @@ pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
             folder: folder.display().to_string(),
         });
     };
-    if let Some(out) = &arguments.out {
-        prepare_file(out, "--out", OverwritePolicy::of(arguments.force))?;
-    }
     let default = || folder.join(REPORT);
     let out = arguments.out.clone().unwrap_or_else(default);
+    let policy = match &arguments.out {
+        Some(_) => OverwritePolicy::of(arguments.force),
+        // The page of the results themselves, made anew.
+        None => OverwritePolicy::Replace,
+    };
+    let _claim = prepare_file(&out, "--out", policy)?;
     write_text(&out, &text)?;
     if arguments.json {
         let message = serde_json::json!({"kind": kind, "file": out.display().to_string(), "bytes": text.len()});

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::engine::full;
+use super::engine::{full, tell_unfit};
 use super::error::{AppError, ExitCode};
 use super::output::say;
 use super::{fleet, vary};
@@ -68,6 +68,10 @@ pub(super) fn run(arguments: &TaskArguments) -> Result<ExitCode, AppError> {
     let store = Store::of(&arguments.plan);
     store.make()?;
     let kind = plan.head.plan.clone();
+    if Plan::open(&arguments.plan)?.task(id).is_ok() {
+        let unfit = store.take_unfit(id)?;
+        tell_unfit(unfit.as_slice(), store.path());
+    }
     if store.exists(id) {
         return match kind.as_str() {
             fleet::KIND => fleet::report_result(&store, id),

@@ -285,7 +285,11 @@ impl Case {
         sources
     }
 
-    fn provenance(&self) -> Result<Provenance, CaseError> {
+    /// The files that it is made of, as they stand now.
+    ///
+    /// # Errors
+    /// One that is gone.
+    pub fn provenance(&self) -> Result<Provenance, CaseError> {
         let sources = self.sources();
         let named = sources
             .iter()

@@ -187,7 +187,11 @@ impl PosturesCase {
         all.all(|posture| posture.torque.is_some())
     }
 
-    fn provenance(&self) -> Result<Provenance, CaseError> {
+    /// The files that it is made of, as they stand now.
+    ///
+    /// # Errors
+    /// One that is gone.
+    pub fn provenance(&self) -> Result<Provenance, CaseError> {
         let fitted = self.input.recordings.iter().map(|r| &r.name);
         let tables = fitted.chain(self.file.predict.as_ref());
         let mut sources: Vec<(String, PathBuf)> = tables

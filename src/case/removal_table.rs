@@ -133,7 +133,11 @@ impl RemovalCase {
         })
     }
 
-    fn provenance(&self) -> Result<Provenance, CaseError> {
+    /// The files that it is made of, as they stand now.
+    ///
+    /// # Errors
+    /// One that is gone.
+    pub fn provenance(&self) -> Result<Provenance, CaseError> {
         let folder = self.file.path.parent().unwrap_or(Path::new("")).to_owned();
         let tables = self.file.fit.iter().chain(&self.file.predict);
         let mut sources: Vec<(String, PathBuf)> = tables

@@ -1,5 +1,6 @@
 //! Every effect at sizes from the largest plausible down to where it is lost, and devices with nothing missing; each a device of its own.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -13,6 +14,8 @@ use super::prove::{Diagnose, score};
 use super::queue;
 use crate::laboratory::{EFFECTS, Known, LabEffect, Recipe, UNLISTED_EFFECTS, sizes, write_case};
 use crate::recording::atomic::{UnfinishedFolder, write_text};
+use crate::recording::claim::clear_unfinished;
+use crate::recording::seal::{SealError, read_sealed, sealed};
 
 /// Seed of the first effect's first device; each effect has this many to itself.
 const SEEDS_PER_EFFECT: u64 = 1000;
@@ -179,20 +182,31 @@ pub(super) fn carry_out<O: Serialize + DeserializeOwned + Send>(
     }
     std::fs::create_dir_all(&folder).map_err(|cause| ProofError::read(&folder, cause))?;
     let done = AtomicUsize::new(0);
+    for place in [course.out, &folder] {
+        clear_unfinished(place);
+    }
     let finished = queue::all(names.len(), course.jobs, |index| {
         let name = &names[index];
         let path = folder.join(format!("{name}.json"));
         let exists = match course.replace {
             true => None,
-            false => existing(&path, made.0, &made.1[index])?,
+            false => existing(&path, (name, &made.1[index]), made.0)?,
         };
+        let exists = exists.and_then(|exists| match exists {
+            Ok(outcome) => Some(outcome),
+            Err(why) => {
+                let count = done.load(Ordering::Relaxed);
+                say(count, names.len(), &format!("{name}: done again: {why}"));
+                None
+            }
+        });
         let outcome = match exists {
             Some(outcome) => outcome,
             None => {
                 let outcome = attempt(index)?;
                 let text = serde_json::to_string_pretty(&outcome)
                     .map_err(|cause| ProofError::read(&path, cause))?;
-                write_text(&path, &(text + "\n"))?;
+                write_text(&path, &sealed(&(text + "\n"), name, BTreeMap::new()))?;
                 outcome
             }
         };
@@ -214,21 +228,23 @@ pub(super) fn carry_out<O: Serialize + DeserializeOwned + Send>(
     Ok(outcomes)
 }
 
-/// The outcome that stands in a file already, if it is of this case.
+/// The outcome of this case that stands in a file already, or why it is to be done again; neither where there is none.
 fn existing<O: DeserializeOwned>(
     path: &Path,
+    (name, made): (&str, &Made),
     making: &dyn Fn(&O) -> Made,
-    made: &Made,
-) -> Result<Option<O>, ProofError> {
-    let Ok(text) = crate::file::read_text(path) else {
-        return Ok(None);
+) -> Result<Option<Result<O, String>>, ProofError> {
+    let text = match read_sealed(path, name) {
+        Ok(text) => text,
+        Err(SealError::Absent) => return Ok(None),
+        Err(why) => return Ok(Some(Err(why.to_string()))),
     };
     let Ok(outcome) = serde_json::from_str::<O>(&text) else {
-        return Ok(None);
+        return Ok(Some(Err("it cannot be read".to_owned())));
     };
     let found = making(&outcome);
     if found == *made {
-        return Ok(Some(outcome));
+        return Ok(Some(Ok(outcome)));
     }
     Err(ProofError::OtherPlan {
         path: path.to_owned(),

@@ -2,21 +2,20 @@
 //!
 //! The content goes to a temporary file in the target's directory, which is renamed onto the
 //! target once everything is on disk. A run that is refused half-way, or interrupted, leaves the old file
-//! or none, and nothing unfinished beside it.
+//! or none, and nothing unfinished beside it. What a killed process has left goes with the next one that writes there: a temporary file or folder is locked
+//! as long as its process lives.
 
-use std::collections::BTreeSet;
-use std::ffi::OsStr;
+use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
 
-use tempfile::{Builder, NamedTempFile, TempDir};
+use tempfile::{Builder, NamedTempFile};
 
 use super::RecordingError;
+use super::placing::{Placing, put_back_or_keep};
+use super::unfinished::{Begun, UNFINISHED, begun, folder_of, is_still_at, lock};
 
-/// Beginning of the names of temporary files and folders.
-const UNFINISHED: &str = ".unfinished-";
+pub use super::unfinished::{abandon, make_folder};
 
 /// A file being written; it gets its name when the writing has succeeded.
 pub type UnfinishedFile = BufWriter<NamedTempFile>;
@@ -30,13 +29,23 @@ pub fn write_atomic<E: std::fmt::Display>(
     write: impl FnOnce(&mut UnfinishedFile) -> Result<(), E>,
 ) -> Result<(), RecordingError> {
     let fail = |cause: &dyn std::fmt::Display| RecordingError::write(path, cause);
-    let directory = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
+    let (file, begun) = prepared(path, write)?;
+    let unbroken = self::begun();
+    file.persist(path).map_err(|e| fail(&e.error))?;
+    drop(unbroken);
+    drop(begun);
+    Ok(())
+}
+
+/// A temporary file with all that belongs into `path`, on disk.
+fn prepared<E: std::fmt::Display>(
+    path: &Path,
+    write: impl FnOnce(&mut UnfinishedFile) -> Result<(), E>,
+) -> Result<(NamedTempFile, Begun), RecordingError> {
+    let fail = |cause: &dyn std::fmt::Display| RecordingError::write(path, cause);
     let (file, begun) = {
         let mut begun = begun();
-        let file = temporary_file_in(directory).map_err(|e| fail(&e))?;
+        let file = temporary_file_in(folder_of(path)).map_err(|e| fail(&e))?;
         let path = Begun::note(&mut begun, file.path());
         (file, path)
     };
@@ -44,11 +53,25 @@ pub fn write_atomic<E: std::fmt::Display>(
     write(&mut writer).map_err(|e| fail(&e))?;
     let file = writer.into_inner().map_err(|e| fail(&e))?;
     file.as_file().sync_all().map_err(|e| fail(&e))?;
-    let unbroken = self::begun();
-    file.persist(path).map_err(|e| fail(&e.error))?;
-    drop(unbroken);
-    drop(begun);
-    Ok(())
+    Ok((file, begun))
+}
+
+/// Writes several files, each whole: all are on disk before the first is put in its place, and where one cannot be, those before it go back.
+///
+/// # Errors
+/// [`RecordingError::Write`] with the file and the cause.
+pub fn write_all<P: AsRef<Path>, C: AsRef<[u8]>>(files: &[(P, C)]) -> Result<(), RecordingError> {
+    let mut ready = Vec::new();
+    for (path, content) in files {
+        let path = path.as_ref();
+        let (file, begun) = prepared(path, |file| file.write_all(content.as_ref()))?;
+        ready.push((file, begun, path));
+    }
+    let _unbroken = begun();
+    let moves = ready
+        .iter()
+        .map(|(from, _, to)| (from.path().to_owned(), (*to).to_owned()));
+    put_back_or_keep(&moves.collect::<Vec<_>>(), &[], false)
 }
 
 /// Writes a text file whole.
@@ -59,83 +82,13 @@ pub fn write_text(path: &Path, text: &str) -> Result<(), RecordingError> {
     write_atomic(path, |file| file.write_all(text.as_bytes()))
 }
 
-/// Files and folders being written now: temporary files and folders, and folders that were made and may be empty yet. While the lock is held nothing is begun and
-/// nothing put in its place, so that files that belong together are never parted.
-static BEGUN: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
-
-fn begun() -> MutexGuard<'static, BTreeSet<PathBuf>> {
-    // A path too many or too few is sound.
-    BEGUN.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// A path that is being written until this is dropped.
-struct Begun(PathBuf);
-
-impl Begun {
-    fn note(begun: &mut BTreeSet<PathBuf>, path: &Path) -> Self {
-        begun.insert(path.to_owned());
-        Self(path.to_owned())
-    }
-}
-
-impl Drop for Begun {
-    fn drop(&mut self) {
-        begun().remove(&self.0);
-    }
-}
-
-/// Makes a folder and those above it. Where the program is interrupted, those that were made and are still empty go again.
-///
-/// # Errors
-/// As `std::fs::create_dir_all`.
-pub fn make_folder(path: &Path) -> std::io::Result<()> {
-    let mut begun = begun();
-    let absent: Vec<PathBuf> = (path.ancestors())
-        .take_while(|folder| !folder.as_os_str().is_empty() && !folder.exists())
-        .map(Path::to_owned)
-        .collect();
-    std::fs::create_dir_all(path)?;
-    begun.extend(absent);
-    Ok(())
-}
-
-/// Removes all that is being written, as the program is about to end: from here on nothing is begun, and nothing put in its place.
-pub fn abandon() {
-    /// Other threads go on until the end, and may just be opening or removing a file.
-    const TRIES: usize = 50;
-    const BETWEEN: Duration = Duration::from_millis(4);
-    let begun = begun();
-    for _ in 0..TRIES {
-        // What a folder holds comes after it in this order, and goes first.
-        let gone = begun.iter().rev().map(|path| abandoned(path));
-        if gone.collect::<Vec<_>>().into_iter().all(|gone| gone) {
-            break;
-        }
-        std::thread::sleep(BETWEEN);
-    }
-    // For good.
-    std::mem::forget(begun);
-}
-
-/// Removes a temporary file or folder, or a folder that is empty. Whether it is gone, or to stay as it holds something whole.
-fn abandoned(path: &Path) -> bool {
-    let is_temporary = |name: &OsStr| name.to_string_lossy().starts_with(UNFINISHED);
-    if path.file_name().is_some_and(is_temporary) {
-        drop(std::fs::remove_dir_all(path).or_else(|_| std::fs::remove_file(path)));
-        return !path.exists();
-    }
-    drop(std::fs::remove_dir(path));
-    let entries = std::fs::read_dir(path).map(|entries| entries.flatten().collect::<Vec<_>>());
-    entries.map_or(true, |found| {
-        !found.is_empty() && !found.iter().any(|entry| is_temporary(&entry.file_name()))
-    })
-}
-
 /// A folder within another in which files that belong together are written, to appear together.
 pub struct UnfinishedFolder {
-    temporary: TempDir,
+    place: PathBuf,
     target: PathBuf,
-    _begun: Begun,
+    begun: Vec<Begun>,
+    /// Locked as long as this lives.
+    _alive: Option<File>,
 }
 
 impl UnfinishedFolder {
@@ -153,37 +106,63 @@ impl UnfinishedFolder {
             use std::os::unix::fs::PermissionsExt as _;
             builder.permissions(std::fs::Permissions::from_mode(0o777));
         }
-        let temporary = builder.tempdir_in(target);
-        let temporary = temporary.map_err(|e| RecordingError::write(target, e))?;
-        Ok(Self {
-            _begun: Begun::note(&mut begun, temporary.path()),
-            temporary,
-            target: target.to_owned(),
-        })
+        loop {
+            let made = builder.tempdir_in(target);
+            let place = made.map_err(|e| RecordingError::write(target, e))?.keep();
+            // A folder cannot be opened everywhere.
+            let alive = File::open(&place)
+                .ok()
+                .filter(|folder| lock(folder) == Some(true));
+            if alive
+                .as_ref()
+                .is_some_and(|folder| !is_still_at(folder, &place))
+            {
+                // Another process took it for one that nobody has.
+                continue;
+            }
+            return Ok(Self {
+                begun: vec![Begun::note(&mut begun, &place)],
+                place,
+                target: target.to_owned(),
+                _alive: alive,
+            });
+        }
     }
 
     /// Where to write.
     #[must_use]
     pub fn path(&self) -> &Path {
-        self.temporary.path()
+        &self.place
     }
 
-    /// Puts the files of these names where they belong.
+    /// Puts the files of these names where they belong, the last one last, and takes away those of a result before that it does not have (`gone`): all of it, or
+    /// nothing. Folders of the names `along` stay with the files.
     ///
     /// # Errors
-    /// [`RecordingError::Write`] with the file that cannot be put there.
-    pub fn finish(self, names: &[&str]) -> Result<(), RecordingError> {
-        let _unbroken = begun();
-        for name in names {
-            let target = self.target.join(name);
-            std::fs::rename(self.path().join(name), &target)
-                .map_err(|e| RecordingError::write(&target, e))?;
+    /// [`RecordingError::Write`] with the file that cannot be put there; what stood stands.
+    pub fn finish(
+        mut self,
+        names: &[&str],
+        gone: &[&str],
+        along: &[&str],
+    ) -> Result<(), RecordingError> {
+        let mut unbroken = begun();
+        let placing = Placing {
+            place: &self.place,
+            target: &self.target,
+            names,
+            gone,
+            along,
+        };
+        let mut note = |path: &Path| self.begun.push(Begun::note(&mut unbroken, path));
+        if let Some(place) = placing.finish(&mut note)? {
+            self.place = place;
         }
+        // Dropping takes the lock.
+        drop(unbroken);
         Ok(())
     }
-}
 
-impl UnfinishedFolder {
     /// Lets it be the folder of this path, with all that is in it; an empty one may stand there.
     ///
     /// # Errors
@@ -191,6 +170,13 @@ impl UnfinishedFolder {
     pub fn become_folder(self, target: &Path) -> Result<(), RecordingError> {
         let _unbroken = begun();
         std::fs::rename(self.path(), target).map_err(|e| RecordingError::write(target, e))
+    }
+}
+
+impl Drop for UnfinishedFolder {
+    fn drop(&mut self) {
+        // What stays goes with the next process that writes there.
+        drop(std::fs::remove_dir_all(&self.place));
     }
 }
 
@@ -203,7 +189,13 @@ fn temporary_file_in(directory: &Path) -> std::io::Result<NamedTempFile> {
         use std::os::unix::fs::PermissionsExt as _;
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
-    builder.tempfile_in(directory)
+    loop {
+        let file = builder.tempfile_in(directory)?;
+        lock(file.as_file());
+        if is_still_at(file.as_file(), file.path()) {
+            return Ok(file);
+        }
+    }
 }
 
 #[cfg(test)]
@@ -253,7 +245,7 @@ mod tests {
         for name in ["a", "b"] {
             write_text(&unfinished.path().join(name), "").unwrap();
         }
-        unfinished.finish(&["a", "b"]).unwrap();
+        unfinished.finish(&["a", "b"], &[], &[]).unwrap();
         assert_eq!(names(), ["a", "b"]);
         assert!(UnfinishedFolder::within(&directory.path().join("nowhere")).is_err());
     }

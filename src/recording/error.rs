@@ -147,10 +147,14 @@ pub enum RecordingError {
 }
 
 impl RecordingError {
-    /// A write error at `path`.
+    /// A write error at `path`, of a temporary folder at the place that it is for.
     pub(crate) fn write(path: &Path, cause: impl std::fmt::Display) -> Self {
+        let is_temporary = |part: &std::path::Component<'_>| {
+            let name = part.as_os_str().to_string_lossy();
+            name.starts_with(super::unfinished::UNFINISHED)
+        };
         Self::Write {
-            path: path.to_path_buf(),
+            path: path.components().filter(|c| !is_temporary(c)).collect(),
             cause: cause.to_string(),
         }
     }

@@ -5,6 +5,7 @@
 //! the signals that the simulated cell writes.
 
 pub mod atomic;
+pub mod claim;
 pub mod csv;
 mod error;
 pub mod gaps;
@@ -16,14 +17,17 @@ pub mod long_table;
 pub mod parquet;
 #[cfg(feature = "parquet")]
 mod parquet_file;
+mod placing;
 pub mod provenance;
 pub mod samples;
 pub mod schema;
+pub mod seal;
 #[cfg(feature = "parquet")]
 pub mod table;
 pub mod thousandfold;
 #[cfg(feature = "parquet")]
 mod thrift;
+mod unfinished;
 
 pub use crate::unit::SiUnit as Unit;
 pub use error::RecordingError;

@@ -14,6 +14,13 @@ const LIBRARIES: [(&str, &str); 2] = [("rapier3d-f64", "0.36.1"), ("rerun", "0.3
 /// The program with its version.
 const PROGRAM: &str = concat!("idc ", env!("CARGO_PKG_VERSION"));
 
+/// Its version, and which build of it this is.
+pub const BUILD: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("IDC_SOURCES"), ")");
+
+/// Hash of the sources that it was built of, and of the versions of all crates (`build.rs`).
+#[cfg(test)]
+const SOURCES: &str = env!("IDC_SOURCES");
+
 fn libraries() -> Vec<String> {
     LIBRARIES
         .map(|(name, version)| format!("{name} {version}"))
@@ -65,10 +72,36 @@ impl Provenance {
 }
 
 impl Provenance {
-    /// This program with the libraries that decide about numbers, as their versions say.
+    /// This program by its version and its sources, with the libraries that decide about numbers.
     #[must_use]
     pub fn this_program() -> String {
-        format!("{PROGRAM} with {}", libraries().join(", "))
+        format!("idc {BUILD} with {}", libraries().join(", "))
+    }
+
+    /// What another one has otherwise, in words: what comes of it is another result. None where that is nothing.
+    #[must_use]
+    pub fn changed(&self, now: &Self) -> Option<String> {
+        let same = |one: &SourceFile, other: &SourceFile| one.sha256 == other.sha256;
+        let alike = self.files.len() == now.files.len()
+            && self
+                .files
+                .iter()
+                .zip(&now.files)
+                .all(|(one, other)| same(one, other));
+        if alike {
+            let is_same = (&self.program, &self.libraries, self.seed)
+                == (&now.program, &now.libraries, now.seed);
+            return (!is_same).then(|| "the program or the seed has changed".to_owned());
+        }
+        let known = |file: &&SourceFile| self.files.iter().any(|old| same(old, file));
+        let other = now.files.iter().find(|file| !known(file));
+        Some(match other {
+            Some(file) if self.files.iter().any(|old| old.file == file.file) => {
+                format!("{} has changed", file.file)
+            }
+            Some(file) => format!("{} is new", file.file),
+            None => "files have been taken away, or change places".to_owned(),
+        })
     }
 
     /// Its sources, however the files were called and wherever they stood.
@@ -142,6 +175,38 @@ mod tests {
         let published = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad";
         assert_eq!(provenance.files[0].sha256, published);
         assert_eq!(provenance.files[0].bytes, 3);
+    }
+
+    #[test]
+    fn the_program_is_named_by_its_sources_as_they_stand() {
+        // By another route: the files as this test finds them.
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let mut waiting = vec!["src".to_owned()];
+        let mut names = vec!["Cargo.lock".to_owned()];
+        while let Some(folder) = waiting.pop() {
+            for entry in std::fs::read_dir(root.join(&folder)).unwrap() {
+                let entry = entry.unwrap();
+                let name = format!("{folder}/{}", entry.file_name().to_str().unwrap());
+                let list = if entry.path().is_dir() {
+                    &mut waiting
+                } else {
+                    &mut names
+                };
+                list.push(name);
+            }
+        }
+        names.sort();
+        let mut bytes = Vec::new();
+        for name in names {
+            let content = std::fs::read(root.join(&name)).unwrap();
+            for part in [name.as_bytes(), &content] {
+                bytes.extend((part.len() as u64).to_le_bytes());
+                bytes.extend(part);
+            }
+        }
+        let hash = SourceFile::holding("", &bytes).sha256;
+        assert_eq!(SOURCES, &hash[..16]);
+        assert!(Provenance::this_program().contains(SOURCES));
     }
 
     #[test]

@@ -142,8 +142,7 @@ class Work:
         try:
             code, message, *result = await future
         except Exception as error:
-            self.fail(name, f"{type(error).__name__}: {error}".splitlines()[0])
-            return
+            code, message, result = None, f"{type(error).__name__}: {error}".splitlines()[0], []
         if result:
             self.keep(name, result[0])
         # A file system that is shared may show a folder late.
@@ -156,6 +155,7 @@ class Work:
             say(done=self.done)
             self.ready.extend(self.waiting.pop(name, []))
         else:
+            # Also a worker that was lost may have put its result in place before.
             self.fail(name, message.splitlines()[-1] if message else f"exit code {code}")
 
 
@@ -166,7 +166,7 @@ def refuse(reason):
 
 async def check(client, order):
     """Refuses workers that would do something else, each by its name."""
-    mark = os.path.join(os.path.dirname(order["plan"]), f".seen-{uuid.uuid4().hex}")
+    mark = os.path.join(os.path.dirname(order["plan"]), f".unfinished-seen-{uuid.uuid4().hex}")
     Path(mark).touch()
     try:
         workers = await client.run(version_here, order["program"], mark)

@@ -16,6 +16,6 @@ pub use dask::{Dask, dask};
 pub use engine::{Engine, TaskMessage};
 pub use error::TaskError;
 pub use local::local;
-pub use plan::{Head, Plan, Task, name_of};
+pub use plan::{Head, Made, Plan, Task, name_of};
 pub use snakemake::snakefile;
-pub use store::{RESULT, Store};
+pub use store::{RESULT, Store, TASKS, Unfit};

@@ -1,5 +1,6 @@
 //! A plan: a head, then a task a line.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
@@ -50,6 +51,59 @@ pub struct Plan {
     pub head: Head,
     lines: BufReader<File>,
     line: usize,
+}
+
+/// What an earlier plan was made of: its program, and files with their hashes.
+#[derive(Debug, Default)]
+pub struct Made {
+    program: String,
+    files: BTreeMap<String, String>,
+}
+
+impl Made {
+    /// That of a plan, as far as it can be read; none where there is none.
+    #[must_use]
+    pub fn of(plan: &Path) -> Option<Self> {
+        let lines = BufReader::new(File::open(plan).ok()?).lines();
+        let mut lines = lines.map_while(Result::ok);
+        let head: Head = serde_json::from_str(&lines.next()?).ok()?;
+        let own = lines.filter_map(|line| Some(serde_json::from_str::<Task>(&line).ok()?.files));
+        let files = own.flatten().chain(head.files);
+        Some(Self {
+            files: files.map(|file| (file.file, file.sha256)).collect(),
+            program: head.program,
+        })
+    }
+
+    /// What a plan of now has otherwise, in words; none where that is nothing.
+    #[must_use]
+    pub fn changed(&self, now: &Self) -> Option<String> {
+        /// Names that are told.
+        const TOLD: usize = 3;
+        if self.program != now.program {
+            return Some(format!("the program changed (it was {})", self.program));
+        }
+        let other = |(file, hash): &(&String, &String)| {
+            self.files.get(*file).is_some_and(|old| old != *hash)
+        };
+        let names = now
+            .files
+            .iter()
+            .filter(other)
+            .map(|(file, _)| file.as_str());
+        let names: Vec<&str> = names.collect();
+        let told = names
+            .iter()
+            .take(TOLD)
+            .copied()
+            .collect::<Vec<_>>()
+            .join(", ");
+        match names.len() {
+            0 => None,
+            1..=TOLD => Some(format!("{told} changed")),
+            count => Some(format!("{told} and {} others changed", count - TOLD)),
+        }
+    }
 }
 
 /// A name made of parts, none of which can be taken for two.

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::store::RESULT;
+use super::store::{RESULT, TASKS};
 
 /// The file for Snakemake of a plan that a program does.
 #[must_use]
@@ -45,6 +45,6 @@ rule task:
 ",
         program = text(program),
         plan = text(plan),
-        tasks = text(&folder.join("tasks")),
+        tasks = text(&folder.join(TASKS)),
     )
 }

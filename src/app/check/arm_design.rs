@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::json;
 
 use super::super::error::AppError;
-use super::super::files::{OverwritePolicy, prepare_file};
+use super::super::files::{OverwritePolicy, prepare_files};
 use super::arm::recorded;
 use super::report::{Report, shown};
 use crate::arm::JointKind;
@@ -20,7 +20,7 @@ use crate::excitation::{
 use crate::figure::svg;
 use crate::quantity::significant;
 use crate::recorded_arm::motion::Motion;
-use crate::recording::atomic::write_text;
+use crate::recording::atomic::write_all;
 use crate::recording::csv::columns_text;
 use crate::scenario::arm_file::{ArmFile, is_arm_file, load_arm_file};
 
@@ -46,16 +46,14 @@ pub(super) fn add(report: &mut Report, path: &Path, wanted: &Wanted) -> Result<(
         });
     }
     let picture = wanted.file.with_extension("svg");
-    for file in [wanted.file, &picture] {
-        prepare_file(file, "--design", wanted.policy)?;
-    }
+    let _claims = prepare_files(&[wanted.file, &picture], "--design", wanted.policy)?;
     let file = load_arm_file(&own)?;
     let input = recorded(&file, own.parent().unwrap_or(Path::new("")));
     let clearance = Clearance::of(&file)?;
     let found = design(&file, &input, &clearance, wanted.duration)?;
     let motion = found.path.motion(0, file.rate);
-    write_text(wanted.file, &table_of(&file, &motion)?)?;
-    write_text(&picture, &picture_of(&file, &motion)?)?;
+    let [table, drawn] = [table_of(&file, &motion)?, picture_of(&file, &motion)?];
+    write_all(&[(wanted.file, table), (&picture, drawn)])?;
     say(report, &file, &found, &clearance, wanted);
     let files: [(&str, &PathBuf); 2] =
         [("path", &wanted.file.to_owned()), ("its picture", &picture)];

@@ -110,11 +110,7 @@ impl PreparedStudy {
         for (name, svg) in &pictures {
             files.extend(svg.as_deref().map(|svg| (*name, svg)));
         }
-        let names = self.folder.write_texts(&files)?;
-        for (name, _) in pictures.iter().filter(|(_, svg)| svg.is_none()) {
-            // The picture of another study would pass for one of this.
-            self.folder.discard(name)?;
-        }
+        let names = self.folder.write_texts(&NAMES, &files)?;
         Ok(FinishedStudy {
             table: text(&report, Style::Plain),
             names,

@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use super::super::error::{AppError, ExitCode};
-use super::super::files::OverwritePolicy;
+use super::super::files::{OverwritePolicy, claim_folder};
 use super::super::interrupt::Interruptible;
 use super::super::output::say;
 use super::super::progress;
 use super::super::terminal::{say_aside, shown_path};
-use super::one::{Prepared, complete, is_case};
+use super::one::{Prepared, is_case};
 use super::shared::{SharedFamily, SharingCase, shared};
 use crate::case::{RIG, is_cell_case};
 use crate::diagnosis::answer::{Answer, Verdict};
@@ -28,9 +28,12 @@ pub(super) struct Outcome {
 
 struct Done {
     answer: Answer,
-    /// Whether it stood there already.
-    kept: bool,
+    /// What became of what stood there already.
+    note: Option<String>,
 }
+
+/// Of a case that stood there, as it would be done now.
+const KEPT: &str = "stood already";
 
 /// Diagnoses all cases below a folder, `jobs` at a time.
 pub(super) fn run(
@@ -42,6 +45,7 @@ pub(super) fn run(
     silent: bool,
 ) -> Result<Vec<Outcome>, AppError> {
     let names = cases(folder, cell.is_some())?;
+    let claim = claim_folder(out)?;
     let bar = progress::cases(names.len(), silent);
     let processors = std::thread::available_parallelism().map_or(1, usize::from);
     let jobs = jobs.min(names.len());
@@ -77,6 +81,9 @@ pub(super) fn run(
         }
     });
     bar.finish_and_clear();
+    drop(claim);
+    // Empty where none came to a diagnosis.
+    drop(std::fs::remove_dir(out));
     let mut outcomes = outcomes
         .into_inner()
         .unwrap_or_else(PoisonError::into_inner);
@@ -115,15 +122,27 @@ fn one(
     out: &Path,
     policy: OverwritePolicy,
 ) -> Result<Done, AppError> {
-    if policy == OverwritePolicy::Keep
-        && let Some(answer) = complete(out)
-    {
-        return Ok(Done { answer, kept: true });
+    let prepared = Prepared::new(case, (cell, None, limit), out, policy)?;
+    let mut again = None;
+    if policy == OverwritePolicy::Keep {
+        match prepared.standing()? {
+            Some(Ok(standing)) => {
+                return Ok(Done {
+                    answer: standing.answer,
+                    note: Some(KEPT.to_owned()),
+                });
+            }
+            Some(Err(why)) => {
+                eprintln!("note: {}: {why}; diagnosed again", case.display());
+                again = Some(format!("done again: {why}"));
+            }
+            None => (),
+        }
     }
-    let finished = Prepared::new(case, (cell, None, limit), out, policy)?.run(&mut |_| ())?;
+    let finished = prepared.run(&mut |_| ())?;
     Ok(Done {
         answer: finished.answer,
-        kept: false,
+        note: again,
     })
 }
 
@@ -226,12 +245,12 @@ pub(super) fn report(
 fn table(outcomes: &[Outcome]) -> Table {
     let row = |outcome: &Outcome| {
         let [verdict, seconds, effects] = match &outcome.result {
-            Ok(Done { answer, kept }) => {
+            Ok(Done { answer, note }) => {
                 let effects = answer.effects.iter();
                 let effects = effects.map(|e| e.name.clone() + &e.parameters.place_words());
                 let effects: Vec<String> = effects.collect();
-                let note = if *kept { "  (stood already)" } else { "" };
-                let effects = effects.join(" + ") + note;
+                let note = note.as_ref().map(|note| format!("  ({note})"));
+                let effects = effects.join(" + ") + &note.unwrap_or_default();
                 let seconds = format!("{:.1}", answer.seconds);
                 [word(answer.verdict).to_owned(), seconds, effects]
             }

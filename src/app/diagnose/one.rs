@@ -7,7 +7,7 @@ use super::super::files::{DIAGNOSIS, OutputFolder, OverwritePolicy, is_same};
 use super::cell_scene::{Drawn, cell_scene};
 use super::fit_picture;
 use super::flange_picture;
-use super::outputs::{Finished, NAMES, Outputs, is_complete};
+use super::outputs::{Finished, NAMES, Outputs, lacking};
 use super::postures_picture;
 use super::removal_picture;
 use super::unlisted_picture::picture;
@@ -23,6 +23,8 @@ use crate::diagnosis::effort::EffortLimit;
 use crate::diagnosis::search::progress::Observer;
 use crate::diagnosis::settings::Settings;
 use crate::plant::LawText;
+use crate::recording::provenance::Provenance;
+use crate::recording::seal::{SealError, read_sealed};
 use crate::replay::LoadedCell;
 use crate::scenario::removal_table::is_removal_table;
 use crate::scene::Scene;
@@ -43,6 +45,8 @@ pub(super) struct Prepared {
     subject: Subject,
     settings: Settings,
     folder: OutputFolder,
+    /// What is asked for besides the files, as the seal has it.
+    asked: String,
 }
 
 /// Whether this is a folder with a case.
@@ -50,11 +54,23 @@ pub(super) fn is_case(folder: &Path) -> bool {
     folder.join(RIG).is_file() || is_arm_case(folder) || is_postures_case(folder)
 }
 
-/// The diagnosis that stands complete in a folder.
-pub(super) fn complete(folder: &Path) -> Option<Answer> {
-    let text = crate::file::read_text(folder.join(DIAGNOSIS)).ok()?;
-    let answer: Answer = serde_json::from_str(&text).ok()?;
-    (answer.details.schema == DETAILS_SCHEMA && is_complete(folder)).then_some(answer)
+impl Subject {
+    /// The files that it is made of, as they stand now.
+    fn provenance(&self) -> Result<Provenance, AppError> {
+        Ok(match self {
+            Self::Recordings(case) => case.provenance()?,
+            Self::Table(case) => case.provenance()?,
+            Self::Postures(case) => case.provenance()?,
+        })
+    }
+}
+
+/// A diagnosis that stands, with diagnosis.json.
+pub(super) struct Standing {
+    /// The finding.
+    pub answer: Answer,
+    /// diagnosis.json.
+    pub document: String,
 }
 
 impl Prepared {
@@ -73,6 +89,7 @@ impl Prepared {
                 folder: folder.display().to_string(),
             });
         }
+        let mut asked = format!("{limit:?}");
         let subject = if is_table {
             Subject::Table(Box::new(RemovalCase::from_folder(folder)?))
         } else if is_still {
@@ -83,6 +100,7 @@ impl Prepared {
                 None => Case::from_folder(folder)?,
             };
             if let Some(law) = tried {
+                asked += &format!(" {law:?}");
                 case.try_law(law)?;
             }
             Subject::Recordings(Box::new(case))
@@ -104,7 +122,32 @@ impl Prepared {
                 ..Settings::default()
             },
             folder: OutputFolder::prepare(out, &NAMES, policy)?,
+            asked,
         })
+    }
+
+    /// The diagnosis that stands complete, of the same files and settings; or why what stands is none. Neither where nothing stands.
+    pub(super) fn standing(&self) -> Result<Option<Result<Standing, String>>, AppError> {
+        let folder = self.folder.path();
+        let document = match read_sealed(&folder.join(DIAGNOSIS), &self.asked) {
+            Ok(document) => document,
+            Err(SealError::Absent) => return Ok(None),
+            Err(why) => return Ok(Some(Err(format!("of what stands, {why}")))),
+        };
+        let Ok(answer) = serde_json::from_str::<Answer>(&document) else {
+            return Ok(Some(Err(format!("{DIAGNOSIS} cannot be read"))));
+        };
+        if let Some(name) = lacking(folder) {
+            return Ok(Some(Err(format!("{name} is missing"))));
+        }
+        if answer.details.schema != DETAILS_SCHEMA {
+            return Ok(Some(Err(format!("{DIAGNOSIS} is of another form"))));
+        }
+        let now = self.subject.provenance()?;
+        Ok(Some(match answer.details.provenance.changed(&now) {
+            Some(why) => Err(why),
+            None => Ok(Standing { answer, document }),
+        }))
     }
 
     /// Diagnoses it and writes its files; `observer` gets its progress.
@@ -141,7 +184,7 @@ impl Prepared {
             scene: None,
             comparison: &Comparison::default(),
         };
-        outputs.write(&self.folder)
+        outputs.write(&self.folder, &self.asked)
     }
 
     fn of_postures(&self, case: &PosturesCase) -> Result<Finished, AppError> {
@@ -167,7 +210,7 @@ impl Prepared {
             scene: None,
             comparison: &Comparison::default(),
         };
-        outputs.write(&self.folder)
+        outputs.write(&self.folder, &self.asked)
     }
 
     fn of_recordings(
@@ -212,7 +255,7 @@ impl Prepared {
             scene: scene.flatten(),
             comparison: &comparison,
         };
-        outputs.write(&self.folder)
+        outputs.write(&self.folder, &self.asked)
     }
 }
 

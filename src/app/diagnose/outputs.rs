@@ -11,6 +11,7 @@ use crate::diagnosis::answer::Answer;
 use crate::diagnosis::difference::comparison::Comparison;
 use crate::document::{Style, html, text};
 use crate::recording::atomic::write_text;
+use crate::recording::seal::{hashes, sealed};
 use crate::report;
 use crate::scene::Scene;
 use crate::viewer::write_board;
@@ -38,10 +39,13 @@ pub(super) const NAMES: [&str; 13] = [
     DIAGNOSIS,
 ];
 
-/// Whether a folder holds the files of every diagnosis.
-pub(super) fn is_complete(folder: &Path) -> bool {
+/// Files with numbers to go on with, whose content diagnosis.json seals. (Others hold the time that it took.)
+const SEALED: [&str; 5] = [IMPROVED, IMPROVED_ARM, PREDICTION, DRIVES, IDENTIFIED];
+
+/// The first of the files of every diagnosis that a folder does not hold.
+pub(super) fn lacking(folder: &Path) -> Option<&'static str> {
     let all = [ACCOUNT, IMPROVED, COMPARISON, BALANCE, BOARD, DIAGNOSIS];
-    all.iter().all(|name| folder.join(name).is_file())
+    all.into_iter().find(|name| !folder.join(name).is_file())
 }
 
 /// Files of a diagnosis.
@@ -77,10 +81,14 @@ pub(super) struct Finished {
 }
 
 impl Outputs<'_> {
-    /// Writes all of it.
-    pub(super) fn write(mut self, folder: &OutputFolder) -> Result<Finished, AppError> {
+    /// Writes all of it, sealed as what was asked for.
+    pub(super) fn write(
+        mut self,
+        folder: &OutputFolder,
+        asked: &str,
+    ) -> Result<Finished, AppError> {
         self.answer.take_out_what_is_no_number();
-        let document = self.answer.text()?;
+        let mut document = self.answer.text()?;
         let report = report::diagnosis(&self.answer, self.comparison);
         let account = text(&report, Style::Plain);
         let beside = |wanted: &str| {
@@ -95,14 +103,12 @@ impl Outputs<'_> {
             (PICTURE, self.picture),
             (FIT_PICTURE, self.fit_picture),
         ];
-        let absent = optional.iter().filter(|(_, text)| text.is_none());
-        let absent: Vec<&str> = absent.map(|(name, _)| *name).collect();
         let texts = [(ACCOUNT, account.as_str()), (IMPROVED, self.improved)];
         let optional = optional
             .into_iter()
             .filter_map(|(name, text)| Some((name, text?)));
         let texts: Vec<(&'static str, &str)> = texts.into_iter().chain(optional).collect();
-        let names = folder.write_with(|unfinished| {
+        let names = folder.write_with(&NAMES, |unfinished| {
             for (name, text) in &texts {
                 write_text(&unfinished.join(name), text)?;
             }
@@ -111,11 +117,10 @@ impl Outputs<'_> {
             write_text(&unfinished.join(REPORT), &html(&report))?;
             let screen = board(&self.answer, self.comparison, self.scene, &report);
             write_board(&unfinished.join(BOARD), &screen)?;
+            let own = SEALED.into_iter();
+            let own = own.filter(|name| texts.iter().any(|(written, _)| written == name));
+            document = sealed(&document, asked, hashes(unfinished, own)?);
             write_text(&unfinished.join(DIAGNOSIS), &document)?;
-            // Those of another diagnosis would pass for some of this, and an old diagnosis beside new files for theirs.
-            for name in absent.iter().chain([&DIAGNOSIS]) {
-                folder.discard(name)?;
-            }
             let names = texts.iter().map(|(name, _)| *name);
             Ok(names
                 .chain([COMPARISON, BALANCE, REPORT, BOARD, DIAGNOSIS])

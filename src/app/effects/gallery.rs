@@ -1,16 +1,16 @@
 //! docs/EFFECTS.md and its pictures.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::super::error::AppError;
-use super::super::files::{OverwritePolicy, prepare_file};
+use super::super::files::{OverwritePolicy, prepare_files};
 use super::arm_page::{ArmExplained, HEADING, list_of_all};
 use super::page::{Explained, by_subsystem};
 use super::picture::{Picture, picture, picture_of_arm};
 use crate::demonstration::{self as scene, ArmStage, Stage, arm_effects};
 use crate::document::markdown_below;
-use crate::recording::atomic::write_text;
+use crate::recording::atomic::write_all;
 
 /// File of the text, and folder of the pictures beside it.
 const TEXT: &str = "EFFECTS.md";
@@ -90,11 +90,8 @@ pub(super) fn write(folder: &Path, policy: OverwritePolicy) -> Result<String, Ap
     }
     text += END;
     pictures.push((folder.join(TEXT), text));
-    for (path, _) in &pictures {
-        prepare_file(path, "--gallery", policy)?;
-    }
-    for (path, content) in &pictures {
-        write_text(path, content)?;
-    }
+    let paths: Vec<&PathBuf> = pictures.iter().map(|(path, _)| path).collect();
+    let _claims = prepare_files(&paths, "--gallery", policy)?;
+    write_all(&pictures)?;
     Ok(summary)
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::super::engine::{EngineArguments, PLAN, Tasks};
+use super::super::engine::{EngineArguments, PLAN, Tasks, tell_changed, tell_unfit};
 use super::super::error::{AppError, ExitCode};
 use super::super::files::{OutputFolder, OverwritePolicy, REPORT, is_same, output_folder};
 use super::super::output::say;
@@ -15,7 +15,8 @@ use super::work::Worker;
 use crate::document::{Style, html, text};
 use crate::fleet::{Found, Layout, scan};
 use crate::quantity::counted;
-use crate::tasks::{Head, Plan, Store};
+use crate::recording::atomic::write_text;
+use crate::tasks::{Head, Made, Plan, Store};
 
 /// For the help.
 pub(in super::super) const EXAMPLES: &str = "\
@@ -85,10 +86,13 @@ pub(in super::super) fn run(arguments: &FleetArguments) -> Result<ExitCode, AppE
     )?;
     let (plan, fits) = (out.join(PLAN), out.join(FITS));
     let store = Store::of(&plan);
+    let before = Made::of(&plan).filter(|_| !arguments.force);
     if arguments.force {
         store.clear()?;
     }
     write(&layout, &arguments.scenario, &plan)?;
+    tell_changed(before.as_ref(), &plan);
+    tell_unfit(&store.vet(Plan::open(&plan)?)?, store.path());
     let quiet = arguments.quiet || arguments.json;
     let new = Plan::open(&plan)?
         .filter_map(Result::ok)
@@ -133,13 +137,17 @@ fn finish(
     folder: &OutputFolder,
 ) -> Result<ExitCode, AppError> {
     let recordings = recordings(plan, places)?;
-    let table = folder.path().join(TABLE);
-    write_table(&recordings, &table)?;
     let Head { program, files, .. } = Plan::open(plan)?.head;
     let found = Found::of(&recordings, layout, (&program, &files));
     let document = serde_json::to_string_pretty(&found)?;
     let report = page::document(&found);
-    folder.write_texts(&[(REPORT, &html(&report)), (FLEET, &document)])?;
+    let names = [TABLE, FLEET, REPORT];
+    folder.write_with(&names, |unfinished| {
+        write_table(&recordings, &unfinished.join(TABLE))?;
+        write_text(&unfinished.join(REPORT), &html(&report))?;
+        write_text(&unfinished.join(FLEET), &document)?;
+        Ok(names.to_vec())
+    })?;
     if arguments.json {
         say(&format!("{document}\n"))?;
     } else if !arguments.quiet {

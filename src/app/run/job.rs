@@ -1,11 +1,12 @@
 //! What the program writes of a job.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::super::edge_course::edge_course;
 use super::super::error::{AppError, ExitCode};
 use super::super::files::{
-    DRAWING, EDGE, EDGE_PROFILE, FIGURES, LEAN, OutputFolder, Picture, RECORDING, RunOutput,
+    DRAWING, EDGE, EDGE_PROFILE, FIGURES, LEAN, OutputFolder, Picture, RECORDING, RUN, RunOutput,
     sketches,
 };
 use super::super::picture::{across_the_edge, finished_edge, scene_of};
@@ -18,6 +19,7 @@ use crate::cell::Cell;
 use crate::document::{Style, html, markdown, text};
 use crate::recording::csv::EdgeProfile;
 use crate::recording::provenance::Provenance;
+use crate::recording::seal::sealed;
 use crate::report::{RunReport, Sketches, drives};
 use crate::rig::Rig;
 use crate::run::{Job, RunResult};
@@ -165,7 +167,7 @@ fn perform_cell(
             || streaming.map(|streaming| streaming.end(&finished.recording, &scene, &summary)),
         );
         let encoded = encoded.transpose()?;
-        let document = serde_json::to_string_pretty(&result)?;
+        let document = document(&result)?;
         let names = folder.write(RunOutput {
             title: &result.title,
             recording: &finished.recording,
@@ -212,7 +214,7 @@ fn perform_bench(
         profile: None,
     };
     let report = report.document();
-    let document = serde_json::to_string_pretty(&result)?;
+    let document = document(&result)?;
     let options = RerunOptions {
         summary_markdown: markdown(&report),
         opening: run_options.opening,
@@ -239,6 +241,12 @@ fn perform_bench(
         names,
         shown: (scene, options.summary_markdown),
     })
+}
+
+/// summary.json.
+fn document(result: &RunResult) -> Result<String, AppError> {
+    let text = serde_json::to_string_pretty(result)?;
+    Ok(sealed(&text, RUN, BTreeMap::new()))
 }
 
 /// Exit code of a result.

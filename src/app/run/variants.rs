@@ -7,11 +7,12 @@ use serde_json::Value;
 
 use super::super::compare::write_page;
 use super::super::error::{AppError, ExitCode};
-use super::super::files::{OutputFolder, OverwritePolicy, RUN_NAMES, prepare_file};
+use super::super::files::{
+    OutputFolder, OverwritePolicy, RUN, RUN_NAMES, claim_folder, prepare_file,
+};
 use super::super::interrupt::Interruptible;
 use super::super::output::{say, say_styled};
 use super::super::progress;
-use super::super::report::read_json;
 use super::super::terminal::{say_aside, shown_path};
 use super::command::RunArguments;
 use super::job::code;
@@ -20,6 +21,7 @@ use super::source::Source;
 use super::table::{Done, document};
 use crate::document::text;
 use crate::proof::in_order;
+use crate::recording::seal::{SealError, read_sealed};
 use crate::report::SUMMARY;
 use crate::run::{Job, RunResult};
 use crate::scenario::ScenarioTemplate;
@@ -50,9 +52,10 @@ pub(super) fn run(
     for variant in variants {
         OutputFolder::check(&out.join(&variant.name), &RUN_NAMES, policy)?;
     }
-    prepare_file(&page, "--out", policy)?;
+    // One claim for all: a process holds no thousands of files open.
+    let _claims = (claim_folder(&out)?, prepare_file(&page, "--out", policy)?);
     let folders = (variants.iter())
-        .map(|variant| OutputFolder::prepare(&out.join(&variant.name), &RUN_NAMES, policy))
+        .map(|variant| OutputFolder::prepare_within(&out.join(&variant.name), &RUN_NAMES, policy))
         .collect::<Result<Vec<_>, _>>()?;
     let quiet = arguments.quiet || arguments.json;
     let bar = progress::runs(variants.len(), PARTS, quiet);
@@ -120,6 +123,13 @@ fn one(
         OverwritePolicy::Keep => existing(folder.path(), &job, &source, !arguments.no_recording)?,
         _ => None,
     };
+    let existing = existing.and_then(|existing| match existing {
+        Ok(result) => Some(result),
+        Err(why) => {
+            eprintln!("note: {}: {why}; run again", folder.path().display());
+            None
+        }
+    });
     let result = match existing {
         Some(result) => result,
         None => {
@@ -134,22 +144,28 @@ fn one(
     })
 }
 
-/// The numbers of a run that stands complete in its folder and comes from the same files and values.
+/// The numbers of a run that stands complete in its folder and comes from the same files and values, or why it is to be run again; neither where nothing stands.
 fn existing(
     folder: &Path,
     job: &Job,
     source: &Source,
     recorded: bool,
-) -> Result<Option<RunResult>, AppError> {
-    let needed = RUN_NAMES.iter().filter(|name| job.writes(name, recorded));
-    if !needed.into_iter().all(|name| folder.join(name).is_file()) {
-        return Ok(None);
-    }
-    let Ok(result) = read_json::<RunResult>(&folder.join(SUMMARY)) else {
-        return Ok(None);
+) -> Result<Option<Result<RunResult, String>>, AppError> {
+    let text = match read_sealed(&folder.join(SUMMARY), RUN) {
+        Ok(text) => text,
+        Err(SealError::Absent) => return Ok(None),
+        Err(why) => return Ok(Some(Err(format!("of {SUMMARY}, {why}")))),
     };
+    let mut needed = RUN_NAMES.iter().filter(|name| job.writes(name, recorded));
+    if let Some(name) = needed.find(|name| !folder.join(name).is_file()) {
+        return Ok(Some(Err(format!("{name} is missing"))));
+    }
+    let result: RunResult = serde_json::from_str(&text)?;
     let (origin, _) = job.provenance(source)?;
-    Ok((result.provenance == origin).then_some(result))
+    let same = result.provenance == origin;
+    let moved = || "its files were called otherwise".to_owned();
+    let why = || result.provenance.changed(&origin).unwrap_or_else(moved);
+    Ok(Some(if same { Ok(result) } else { Err(why()) }))
 }
 
 /// Prints what came of them.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::super::engine::{EngineArguments, PLAN, Tasks};
+use super::super::engine::{EngineArguments, PLAN, Tasks, tell_changed};
 use super::super::error::{AppError, ExitCode};
 use super::super::files::{OutputFolder, OverwritePolicy, REPORT, output_folder};
 use super::super::output::say;
@@ -13,10 +13,14 @@ use super::table::{RUNS, SWEEP, columns, write_table};
 use super::work::Worker;
 use crate::document::{Style, html, text};
 use crate::quantity::counted;
+use crate::recording::atomic::write_text;
 use crate::run::apply_effects;
 use crate::scenario::{EffectRequest, ScenarioTemplate};
-use crate::tasks::{Head, Plan, Store};
+use crate::tasks::{Head, Made, Plan, Store};
 use crate::vary::{Points, Sampling, Sweep, Swept, Variable, VaryError};
+
+/// All that it writes, besides the folders of the tasks.
+const NAMES: [&str; 4] = [PLAN, RUNS, SWEEP, REPORT];
 
 /// For the help.
 pub(in super::super) const EXAMPLES: &str = "\
@@ -118,7 +122,8 @@ pub(in super::super) fn run(arguments: &VaryArguments) -> Result<ExitCode, AppEr
     };
     sweep.check()?;
     let out = output_folder(arguments.out.as_ref(), &arguments.scenario);
-    let plan = prepare(arguments, &sweep, &out)?;
+    let folder = prepare(arguments, &out)?;
+    let plan = write_plan(arguments, &sweep, &folder)?;
     if arguments.plan {
         return planned(arguments, &plan, sweep.points.count());
     }
@@ -132,26 +137,35 @@ pub(in super::super) fn run(arguments: &VaryArguments) -> Result<ExitCode, AppEr
         work: &work,
     };
     arguments.engine.perform(&plan, &tasks)?;
-    finish(arguments, &sweep, &plan, &out)
+    finish(arguments, &sweep, &plan, &folder)
 }
 
-/// The folder, with the plan in it.
-fn prepare(arguments: &VaryArguments, sweep: &Sweep, out: &Path) -> Result<PathBuf, AppError> {
+/// The folder.
+fn prepare(arguments: &VaryArguments, out: &Path) -> Result<OutputFolder, AppError> {
     let policy = match arguments.resume {
         true => OverwritePolicy::Keep,
         false => OverwritePolicy::of(arguments.force),
     };
-    let names = [PLAN, RUNS, SWEEP, REPORT];
-    let folder = OutputFolder::prepare(out, &names, policy)?;
-    for name in [RUNS, SWEEP, REPORT] {
-        // Of a sweep that is being done anew, or has grown.
-        folder.discard(name)?;
-    }
-    let plan = out.join(PLAN);
-    if policy == OverwritePolicy::Replace {
+    OutputFolder::prepare(out, &NAMES, policy)
+}
+
+/// Writes the plan. The tables of the sweep before stand until there are new ones, but where the plan is all that is asked for.
+fn write_plan(
+    arguments: &VaryArguments,
+    sweep: &Sweep,
+    folder: &OutputFolder,
+) -> Result<PathBuf, AppError> {
+    let plan = folder.path().join(PLAN);
+    let before = Made::of(&plan).filter(|_| arguments.resume);
+    if arguments.force {
         Store::of(&plan).clear()?;
     }
-    sweep.write(&plan)?;
+    let all: &[&str] = if arguments.plan { &NAMES } else { &[] };
+    folder.write_with(all, |unfinished| {
+        sweep.write(&unfinished.join(PLAN), folder.path())?;
+        Ok(vec![PLAN])
+    })?;
+    tell_changed(before.as_ref(), &plan);
     Ok(plan)
 }
 
@@ -171,21 +185,27 @@ fn finish(
     arguments: &VaryArguments,
     sweep: &Sweep,
     plan: &Path,
-    out: &Path,
+    folder: &OutputFolder,
 ) -> Result<ExitCode, AppError> {
-    let table = out.join(RUNS);
-    write_table(plan, sweep.template.is_bench(), &table)?;
     let Head { program, files, .. } = Plan::open(plan)?.head;
-    let swept = Swept::of(sweep, (&program, &files), &|wanted| columns(&table, wanted))?;
-    let document = serde_json::to_string_pretty(&swept)?;
-    let report = page::document(&swept, &table)?;
-    let folder = OutputFolder::prepare(out, &[], OverwritePolicy::Keep)?;
-    folder.write_texts(&[(REPORT, &html(&report)), (SWEEP, &document)])?;
+    let mut said = (String::new(), String::new());
+    folder.write_with(&[RUNS, SWEEP, REPORT], |unfinished| {
+        let table = unfinished.join(RUNS);
+        write_table(plan, sweep.template.is_bench(), &table)?;
+        let swept = Swept::of(sweep, (&program, &files), &|wanted| columns(&table, wanted))?;
+        let document = serde_json::to_string_pretty(&swept)?;
+        let report = page::document(&swept, &table)?;
+        write_text(&unfinished.join(REPORT), &html(&report))?;
+        write_text(&unfinished.join(SWEEP), &document)?;
+        said = (document, text(&report, Style::Plain));
+        Ok(vec![RUNS, SWEEP, REPORT])
+    })?;
+    let (document, report) = said;
     if arguments.json {
         say(&format!("{document}\n"))?;
     } else if !arguments.quiet {
-        say(&text(&report, Style::Plain))?;
-        let folder = out.display();
+        say(&report)?;
+        let folder = folder.path().display();
         say(&format!("written to {folder}: {RUNS}, {SWEEP}, {REPORT}\n"))?;
     }
     Ok(ExitCode::Done)

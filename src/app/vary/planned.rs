@@ -55,9 +55,8 @@ impl Sweep {
         }
     }
 
-    /// Writes the plan, a run at a time.
-    pub(super) fn write(&self, plan: &Path) -> Result<(), AppError> {
-        let folder = plan.parent().unwrap_or(Path::new("."));
+    /// Writes the plan, a run at a time, with paths as they are seen from a folder.
+    pub(super) fn write(&self, plan: &Path, folder: &Path) -> Result<(), AppError> {
         let mut files = Files::new(folder);
         let first = self.template.with(&self.edits(&self.points.at(0)));
         let base = first.or_else(|_| self.with(&[]))?;
