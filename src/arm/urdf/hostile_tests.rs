@@ -173,7 +173,8 @@ fn what_belongs_to_a_link_may_stand_in_any_order() {
 #[test]
 fn absent_limits_are_none_from_version_1_2_on() {
     let open = chain(6).replacen("lower=\"-2\" upper=\"2\" ", "", 1);
-    assert!(refusal(&open).contains("position limits 0 to 0"));
+    let said = refusal(&open);
+    assert!(said.contains("position limits 0 to 0"), "{said}");
     let arm = load(&open.replacen("name=\"chain\"", "name=\"chain\" version=\"1.2\"", 1)).unwrap();
     assert_eq!(arm.chain.joints[0].upper, f64::INFINITY);
     assert_eq!(arm.chain.joints[1].upper, 2.0);

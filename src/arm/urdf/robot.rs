@@ -225,9 +225,12 @@ fn limit(given: Given, is_open: bool) -> JointLimit {
         true => or(name, f64::INFINITY),
         false => f64::INFINITY,
     };
-    let end = if is_open { f64::INFINITY } else { 0.0 };
+    let (least, end) = match is_open {
+        true => (f64::NEG_INFINITY, f64::INFINITY),
+        false => (0.0, 0.0),
+    };
     JointLimit {
-        lower: or("lower", -end),
+        lower: or("lower", least),
         upper: or("upper", end),
         effort: or("effort", end),
         velocity: or("velocity", end),
