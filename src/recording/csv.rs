@@ -13,6 +13,7 @@ use columns::{COLUMNS, Column, TIME};
 mod cell;
 mod columns;
 mod edge_profile;
+mod line;
 mod log;
 mod named;
 mod table;
@@ -22,6 +23,7 @@ mod tests;
 pub use cell::{CellRecording, read_cell_csv};
 pub use columns::{column_of, plausible_range};
 pub use edge_profile::EdgeProfile;
+pub use line::line_of;
 #[cfg(feature = "parquet")]
 pub(super) use log::no_stamps;
 pub use log::{Log, read_log_csv};

@@ -10,6 +10,7 @@ use rand::Rng;
 use super::latin::{LatinHypercube, stream};
 use super::variable::{Values, Variable, VaryError};
 use crate::quantity::counted;
+use crate::recording::csv::line_of;
 
 /// Runs at most.
 const MOST: usize = 10_000_000;
@@ -224,10 +225,11 @@ fn read_table(path: &Path) -> Result<(Vec<String>, Rows), String> {
             "it is longer than {LONGEST} bytes, expected a table of at most as many"
         ));
     }
+    let text = text.trim_start_matches('\u{feff}');
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
         .flexible(true)
-        .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
+        .from_reader(text.as_bytes());
     let keys = reader.headers().map_err(|e| e.to_string())?;
     let keys: Vec<String> = keys.iter().map(str::to_owned).collect();
     if let Some(place) = keys.iter().position(|key| !is_key(key)) {
@@ -245,7 +247,7 @@ fn read_table(path: &Path) -> Result<(Vec<String>, Rows), String> {
     let (mut values, mut lines) = (Vec::new(), Vec::new());
     for record in reader.records() {
         let record = record.map_err(|e| e.to_string())?;
-        let line = record.position().map_or(0, csv::Position::line);
+        let line = line_of(text, record.position());
         if record.len() != keys.len() {
             return Err(format!(
                 "line {line}: it has {}, expected {}, one for each key",

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::super::RecordingError;
 use super::columns::TIME;
+use super::line::line_of;
 use super::table::{fault, value};
 
 /// A log; NaN where a field is empty.
@@ -27,10 +28,11 @@ pub struct Log {
 /// A file that cannot be read, one without stamps, a field that is no number, a stamp before the one above it.
 pub fn read_log_csv(path: &Path, wanted: impl Fn(&str) -> bool) -> Result<Log, RecordingError> {
     let text = crate::file::read_text(path).map_err(|e| RecordingError::read(path, e))?;
+    let text = text.trim_start_matches('\u{feff}');
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
-        .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
-    let header = reader.headers().map_err(|e| fault(path, &e))?.clone();
+        .from_reader(text.as_bytes());
+    let header = reader.headers().map_err(|e| fault(path, text, &e))?.clone();
     let names: Vec<String> = header.iter().map(str::to_owned).collect();
     let Some(stamps) = names.iter().position(|name| name == TIME) else {
         return Err(no_stamps(path, &names));
@@ -57,8 +59,8 @@ pub fn read_log_csv(path: &Path, wanted: impl Fn(&str) -> bool) -> Result<Log, R
         }
     }
     for record in reader.records() {
-        let record = record.map_err(|e| fault(path, &e))?;
-        let line = record.position().map_or(0, csv::Position::line);
+        let record = record.map_err(|e| fault(path, text, &e))?;
+        let line = line_of(text, record.position());
         let field = |place: usize, name: &str| value(path, line, name, &record[place]);
         let time = field(stamps, TIME)?;
         if !log.takes(path, line, time)? {
@@ -77,7 +79,8 @@ pub(in super::super) fn no_stamps(path: &Path, names: &[String]) -> RecordingErr
         path: path.to_owned(),
         column: TIME.to_owned(),
         found: "missing".to_owned(),
-        expected: format!("it beside {}", names.join(", ")),
+        // Their names are not told: a case from elsewhere may name any file of this machine.
+        expected: format!("it beside the {} columns that there are", names.len()),
     }
 }
 

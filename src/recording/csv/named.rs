@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::super::RecordingError;
+use super::line::line_of;
 use super::table::fault;
 
 /// Values of the columns asked for, NaN for an empty field, and the line of each row, from 1.
@@ -20,10 +21,11 @@ pub struct NamedColumns {
 /// A file that cannot be read.
 pub fn header_of(path: &Path) -> Result<Vec<String>, RecordingError> {
     let text = crate::file::read_text(path).map_err(|e| RecordingError::read(path, e))?;
+    let text = text.trim_start_matches('\u{feff}');
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
-        .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
-    let header = reader.headers().map_err(|e| fault(path, &e))?;
+        .from_reader(text.as_bytes());
+    let header = reader.headers().map_err(|e| fault(path, text, &e))?;
     Ok(header.iter().map(str::to_owned).collect())
 }
 
@@ -33,10 +35,11 @@ pub fn header_of(path: &Path) -> Result<Vec<String>, RecordingError> {
 /// A file that cannot be read, a column that it lacks, a field that is no number.
 pub fn read_named(path: &Path, names: &[&str]) -> Result<NamedColumns, RecordingError> {
     let text = crate::file::read_text(path).map_err(|e| RecordingError::read(path, e))?;
+    let text = text.trim_start_matches('\u{feff}');
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
-        .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
-    let header = reader.headers().map_err(|e| fault(path, &e))?.clone();
+        .from_reader(text.as_bytes());
+    let header = reader.headers().map_err(|e| fault(path, text, &e))?.clone();
     let place = |name: &&str| {
         header
             .iter()
@@ -54,8 +57,8 @@ pub fn read_named(path: &Path, names: &[&str]) -> Result<NamedColumns, Recording
     let mut columns = vec![Vec::new(); names.len()];
     let mut lines = Vec::new();
     for record in reader.records() {
-        let record = record.map_err(|e| fault(path, &e))?;
-        let line = record.position().map_or(0, csv::Position::line);
+        let record = record.map_err(|e| fault(path, text, &e))?;
+        let line = line_of(text, record.position());
         lines.push(line);
         for ((values, place), name) in columns.iter_mut().zip(&places).zip(names) {
             let field = &record[*place];

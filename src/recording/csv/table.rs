@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::super::RecordingError;
 use super::columns::{Column, TIME};
+use super::line::line_of;
 
 /// Content of a file.
 pub(super) struct ParsedTable {
@@ -29,10 +30,11 @@ struct Places {
 /// Reads a file's fields.
 pub(super) fn read(path: &Path, columns: &[Column]) -> Result<ParsedTable, RecordingError> {
     let text = crate::file::read_text(path).map_err(|e| RecordingError::read(path, e))?;
+    let text = text.trim_start_matches('\u{feff}');
     let mut reader = csv::ReaderBuilder::new()
         .trim(csv::Trim::All)
-        .from_reader(text.trim_start_matches('\u{feff}').as_bytes());
-    let header = reader.headers().map_err(|e| fault(path, &e))?.clone();
+        .from_reader(text.as_bytes());
+    let header = reader.headers().map_err(|e| fault(path, text, &e))?.clone();
     let places = places(path, &header, columns)?;
     let mut table = ParsedTable {
         time: Vec::new(),
@@ -47,8 +49,8 @@ pub(super) fn read(path: &Path, columns: &[Column]) -> Result<ParsedTable, Recor
     };
     let mut before = csv::StringRecord::new();
     for record in reader.records() {
-        let record = record.map_err(|e| fault(path, &e))?;
-        let line = record.position().map_or(0, csv::Position::line);
+        let record = record.map_err(|e| fault(path, text, &e))?;
+        let line = line_of(text, record.position());
         if !table.time.is_empty() && record == before {
             table.repeated.push(line);
             continue;
@@ -74,8 +76,8 @@ pub(super) fn read(path: &Path, columns: &[Column]) -> Result<ParsedTable, Recor
     Ok(table)
 }
 
-pub(super) fn fault(path: &Path, error: &csv::Error) -> RecordingError {
-    let line = error.position().map_or(1, csv::Position::line);
+pub(super) fn fault(path: &Path, text: &str, error: &csv::Error) -> RecordingError {
+    let line = line_of(text, error.position());
     match error.kind() {
         csv::ErrorKind::UnequalLengths {
             len, expected_len, ..
@@ -104,7 +106,9 @@ fn places(
     let known = || std::iter::once(TIME).chain(columns.iter().map(|column| column.name));
     let mut ignored = Vec::new();
     for (index, name) in header.iter().enumerate() {
-        if header.iter().take(index).any(|other| other == name) {
+        // Of a file that is no recording nothing is told.
+        let is_ours = header.iter().any(|name| name == TIME);
+        if is_ours && header.iter().take(index).any(|other| other == name) {
             return Err(refuse(name, "there twice".to_owned(), "it once".to_owned()));
         }
         if known().any(|known| known == name) || is_of_band(name, known()) {
