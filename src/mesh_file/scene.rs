@@ -4,7 +4,7 @@ use glam::{DMat4, DVec3};
 
 /// Most triangles and points of a file: a scene may name one shape many times over.
 const MOST_TRIANGLES: usize = 10_000_000;
-const MOST_POINTS: usize = 15_000_000;
+pub(super) const MOST_POINTS: usize = 15_000_000;
 /// Most elements that a walk through a scene comes by: nodes may name nodes twice at each level.
 const MOST_ELEMENTS: usize = 5_000_000;
 

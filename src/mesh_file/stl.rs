@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::scene::{Fault, MeshFile, MeshPart};
+use super::scene::{Fault, MeshFile, MeshPart, bounded};
 use super::text::{decoded, lines, number};
 
 /// Length of a binary file's header with the count of triangles, and of each triangle [bytes].
@@ -69,6 +69,7 @@ fn binary(body: &[u8], declared: usize) -> Result<MeshFile, Fault> {
         }
         declared
     };
+    bounded(count, 3 * count)?;
     let coordinate = |record: &[u8], place: usize| {
         let four = &record[12 + 4 * place..16 + 4 * place];
         f64::from(f32::from_le_bytes([four[0], four[1], four[2], four[3]]))
@@ -197,6 +198,7 @@ impl Facets {
             ));
         };
         add(&mut self.part, [a, b, c]);
+        bounded(self.part.triangles.len(), self.part.points.len())?;
         self.open = false;
         Ok(())
     }

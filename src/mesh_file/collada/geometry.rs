@@ -83,7 +83,7 @@ struct Input {
 
 impl Input {
     /// Corners of an element with indices, by their points.
-    fn corners(&self, tree: &Tree, p: Node) -> Result<Vec<u32>, Fault> {
+    fn corners<'a>(&self, tree: &Tree<'a>, p: Node<'a, 'a>) -> Result<Vec<u32>, Fault> {
         let indices = tree.indices(p)?;
         let (stride, count) = (self.stride, self.points.len());
         if indices.len() % stride != 0 {

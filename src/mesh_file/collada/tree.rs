@@ -1,11 +1,12 @@
 //! The XML tree of a COLLADA document: elements by name, targets by id, numbers.
 
+use std::borrow::Cow;
 use std::cell::Cell;
 use std::collections::HashMap;
 
 use roxmltree::{Document, Node};
 
-use crate::mesh_file::scene::Fault;
+use crate::mesh_file::scene::{Fault, MOST_POINTS, bounded};
 use crate::mesh_file::text::{number, shown};
 use crate::xml::Lines;
 
@@ -113,16 +114,19 @@ impl<'a> Tree<'a> {
     }
 
     /// An element's numbers.
-    pub(super) fn numbers(&self, node: Node) -> Result<Vec<f64>, Fault> {
+    pub(super) fn numbers(&self, node: Node<'a, 'a>) -> Result<Vec<f64>, Fault> {
         let text = self.text(node)?;
         let words = text.split_ascii_whitespace();
-        words
+        let numbers = words
+            .take(3 * MOST_POINTS + 3)
             .map(|word| number(word).map_err(|reason| self.fault(node, reason)))
-            .collect()
+            .collect::<Result<Vec<f64>, Fault>>()?;
+        bounded(0, numbers.len() / 3)?;
+        Ok(numbers)
     }
 
     /// An element's indices.
-    pub(super) fn indices(&self, node: Node) -> Result<Vec<u32>, Fault> {
+    pub(super) fn indices(&self, node: Node<'a, 'a>) -> Result<Vec<u32>, Fault> {
         let text = self.text(node)?;
         let index = |word: &str| {
             word.parse().map_err(|_| {
@@ -139,12 +143,15 @@ impl<'a> Tree<'a> {
     }
 
     /// An element's text, also where a comment stands within.
-    fn text(&self, node: Node) -> Result<String, Fault> {
+    fn text(&self, node: Node<'a, 'a>) -> Result<Cow<'a, str>, Fault> {
         let texts = node
             .children()
             .filter(Node::is_text)
             .filter_map(|text| text.text());
-        let text = texts.collect::<Vec<_>>().join("");
+        let text = match texts.collect::<Vec<_>>()[..] {
+            [only] => Cow::Borrowed(only),
+            ref several => Cow::Owned(several.concat()),
+        };
         // Also of an element without text, which is looked at all the same.
         match self.letters.get().checked_sub(text.len() + 16) {
             Some(left) => {

@@ -158,7 +158,7 @@ impl<'a> Walk<'a> {
     }
 
     /// The matrix of a transform; none of any other element.
-    fn transform(&self, element: Node) -> Result<Option<DMat4>, Fault> {
+    fn transform(&self, element: Node<'a, 'a>) -> Result<Option<DMat4>, Fault> {
         let name = element.tag_name().name();
         let count = match name {
             "translate" | "scale" => 3,
