@@ -645,3 +645,37 @@ fn a_refused_run_leaves_the_files_of_the_last_one() {
     assert_eq!(bench.run().code, 2);
     assert!(before == bench.contents());
 }
+
+// Catches: bodies of one name that are noticed only when their picture is written, with the folder begun.
+#[test]
+fn bodies_of_one_name_get_one_answer_from_check_and_run() {
+    for name in ["forearm", "part", "device", "tool"] {
+        let bench = Bench::new("plate_edge_ideal");
+        let text = std::fs::read_to_string(bench.path("scenario.toml")).unwrap();
+        let obstacle = format!(
+            "\n[[obstacle]]\nname = \"{name}\"\nbox_mm = [10, 10, 10]\nposition_mm = [-900, 900, 50]\n"
+        );
+        bench.write("scenario.toml", text + &obstacle);
+        let before = bench.contents();
+        let check = bench.idc(&["check", "scenario.toml"], &[]);
+        let run = bench.idc(&["run", "scenario.toml", "--out", "out"], &[]);
+        assert_eq!((check.code, run.code), (2, 2), "{}{}", check.err, run.err);
+        let said = check.only_line("error: ");
+        assert_eq!(said, run.only_line("error: "));
+        let expected = format!("`{name}` is the name of ");
+        assert!(
+            said.contains(&expected) && said.contains("an obstacle"),
+            "{said}"
+        );
+        assert!(bench.contents() == before, "{name}: files were left");
+    }
+    // A name's empty parts are no parts of a path in the picture.
+    let bench = Bench::new("plate_edge_ideal");
+    for file in ["arm.urdf", "scenario.toml"] {
+        let text = std::fs::read_to_string(bench.path(file)).unwrap();
+        bench.write(file, text.replace("\"forearm\"", "\"fore//arm/\""));
+    }
+    bench.replace("scenario.toml", "end_mm = 290", "end_mm = 12");
+    let outcome = bench.idc(&["run", "scenario.toml", "--out", "out"], &[]);
+    assert!(outcome.code < 2, "{}", outcome.err);
+}

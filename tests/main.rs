@@ -1,5 +1,6 @@
 //! Tests of the whole: one binary, because each links the engine and the recorder.
 
+mod accepted;
 mod advice;
 mod air;
 mod arm_in_cell;
