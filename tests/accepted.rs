@@ -250,7 +250,7 @@ fn every_bench_that_is_accepted_runs_finite_repeats_and_balances() {
         };
         let keys: Vec<Key> = of_bench.iter().filter(own).cloned().collect();
         let base = bench_text(kind, rest);
-        let outcome = runner(16).run(&draws(keys.len()), |drawn| {
+        let outcome = runner(32).run(&draws(keys.len()), |drawn| {
             let text = with_keys(&base, &keys, &drawn);
             let [refused, accepted] = count.get();
             match check_bench(&text).map_err(|error| with_text(error, &text))? {
