@@ -330,7 +330,7 @@ fn of_a_run_the_old_files_stand_or_the_new_ones() {
         old: Some("run one.toml --out out --quiet"),
         new: "run two.toml --out out --quiet --force",
         results: &["out"],
-        timed: &[],
+        timed: &["summary.json"],
         calls: 40,
     };
     writing.meet(&bench());
@@ -349,7 +349,7 @@ fn of_several_runs_each_is_old_or_new() {
         old: Some("run one.toml --set command[0].force_n=60,70 --out out --quiet --no-recording"),
         new: "run two.toml --set command[0].force_n=60,70 --out out --quiet --no-recording --force",
         results: &["out/force_n=60", "out/force_n=70", "out/compare.html"],
-        timed: &[],
+        timed: &["summary.json"],
         calls: 60,
     };
     writing.meet(&bench());
@@ -458,8 +458,8 @@ fn of_a_study_the_old_files_stand_or_the_new_ones() {
         bench.write(&format!("{name}.toml"), text);
     }
     let writing = Writing {
-        old: Some("design device_design.toml --evaluations 8 --out out --quiet"),
-        new: "design device_design.toml --evaluations 10 --out out --quiet --force",
+        old: Some("design device_design.toml --evaluations 10 --out out --quiet"),
+        new: "design device_design.toml --evaluations 14 --out out --quiet --force",
         results: &["out"],
         timed: &[],
         calls: 15,

@@ -13,7 +13,7 @@ use tempfile::{Builder, NamedTempFile};
 
 use super::RecordingError;
 use super::placing::{Placing, put_back_or_keep};
-use super::unfinished::{Begun, UNFINISHED, begun, folder_of, is_still_at, lock};
+use super::unfinished::{Begun, UNFINISHED, bare, begun, folder_of, is_still_at, lock};
 
 pub use super::unfinished::{abandon, make_folder};
 
@@ -107,7 +107,7 @@ impl UnfinishedFolder {
             builder.permissions(std::fs::Permissions::from_mode(0o777));
         }
         loop {
-            let made = builder.tempdir_in(target);
+            let made = builder.tempdir_in(target).map_err(bare);
             let place = made.map_err(|e| RecordingError::write(target, e))?.keep();
             // A folder cannot be opened everywhere.
             let alive = File::open(&place)
@@ -190,7 +190,7 @@ fn temporary_file_in(directory: &Path) -> std::io::Result<NamedTempFile> {
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
     loop {
-        let file = builder.tempfile_in(directory)?;
+        let file = builder.tempfile_in(directory).map_err(bare)?;
         lock(file.as_file());
         if is_still_at(file.as_file(), file.path()) {
             return Ok(file);

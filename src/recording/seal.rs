@@ -12,6 +12,8 @@ use super::provenance::{Provenance, SourceFile};
 
 /// Key of the seal, the last of its document.
 const KEY: &str = "\"seal\":";
+/// Lines that tell the time that the work took: the same work takes another time.
+const TIMES: [&str; 3] = ["\"seconds\":", "\"wall_time_s\":", "\"real_time_factor\":"];
 /// No result is larger [byte].
 const LARGEST: u64 = 1 << 30;
 
@@ -24,7 +26,7 @@ struct Seal {
     program: String,
     /// Files beside it, by name, with their hashes (SHA-256).
     files: BTreeMap<String, String>,
-    /// Hash (SHA-256) of the document up to here, and of the seal without this. The time that the work took is left out: the same work takes another time.
+    /// Hash (SHA-256) of the document up to here, but for lines that tell a time, and of the seal without this.
     sha256: String,
 }
 
@@ -88,7 +90,7 @@ fn sealed_by(document: &str, of: &str, program: String, files: BTreeMap<String, 
         sha256: String::new(),
     };
     let text = |seal: &Seal| serde_json::to_string(seal).unwrap_or_default();
-    let timed = |line: &&str| line.trim_start().starts_with("\"seconds\":");
+    let timed = |line: &&str| TIMES.iter().any(|key| line.trim_start().starts_with(key));
     let lines: Vec<&str> = body.split('\n').filter(|line| !timed(line)).collect();
     let hashed = format!("{}{}{after}", lines.join("\n"), text(&seal));
     seal.sha256 = SourceFile::holding("", hashed.as_bytes()).sha256;
@@ -205,6 +207,20 @@ mod tests {
         assert_eq!(read_sealed(&path, "task"), Err(SealError::Changed));
         std::fs::remove_file(&path).unwrap();
         assert_eq!(read_sealed(&path, "task"), Err(SealError::Absent));
+    }
+
+    #[test]
+    fn the_time_that_the_work_took_is_no_part_of_it() {
+        let text = |seconds: &str| {
+            sealed(
+                &format!("{{\n  \"seconds\": {seconds},\n  \"n\": 1\n}}\n"),
+                "",
+                BTreeMap::new(),
+            )
+        };
+        let seal = |text: &str| text[text.rfind(KEY).unwrap()..].to_owned();
+        assert_eq!(seal(&text("1.5")), seal(&text("22")));
+        check(&text("1.5"), "").unwrap();
     }
 
     #[test]

@@ -116,3 +116,12 @@ pub(super) fn is_still_at(file: &File, path: &Path) -> bool {
 pub(super) fn is_still_at(_file: &File, _path: &Path) -> bool {
     true
 }
+
+/// What the system says of a temporary file, without the name that nobody knows it by.
+pub(super) fn bare(error: std::io::Error) -> std::io::Error {
+    let text = error.to_string();
+    match text.rsplit_once(" at path \"") {
+        Some((cause, _)) => std::io::Error::new(error.kind(), cause.to_owned()),
+        None => error,
+    }
+}
