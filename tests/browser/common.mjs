@@ -43,6 +43,8 @@ export const unwrapped = (page) => page.evaluate(() => {
 // A page that notes what it asks for and what goes wrong.
 export const open = async (browser, address, options = {}) => {
   const context = await browser.newContext(options);
+  // How long it takes is printed, not judged.
+  context.setDefaultTimeout(120_000);
   const page = await context.newPage();
   const faults = [];
   const requests = [];
