@@ -331,7 +331,8 @@ fn the_checkers_see_what_they_look_for() {
 #[test]
 fn files_are_opened_for_reading_by_one_module() {
     for (file, tokens) in crate::source::sources() {
-        if file.starts_with("file/") {
+        // A folder is locked by opening it.
+        if file.starts_with("file/") || file == "recording/atomic.rs" {
             continue;
         }
         for four in tokens.windows(4) {

@@ -148,7 +148,9 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
                 line.end();
                 return show_standing(arguments, &out, &standing);
             }
-            Some(Err(why)) => eprintln!("note: {}: {why}; diagnosed again", out.display()),
+            Some(Err(why)) => {
+                say_aside(&format!("note: {}: {why}; diagnosed again", out.display()))
+            }
             None => (),
         }
     }

@@ -121,7 +121,9 @@ pub(super) fn tell_unfit(unfit: &[Unfit], folder: &Path) {
     if !unfit.is_empty() {
         let count = counted(unfit.len(), "result");
         let folder = folder.display();
-        eprintln!("note: done again, as not what was written: {count} in {folder} ({told}{more})");
+        say_aside(&format!(
+            "note: done again, as not what was written: {count} in {folder} ({told}{more})"
+        ));
     }
 }
 
@@ -130,7 +132,9 @@ pub(super) fn tell_changed(before: Option<&Made>, plan: &Path) {
     let changed = before.and_then(|before| before.changed(&Made::of(plan)?));
     if let Some(changed) = changed {
         let plan = plan.display();
-        eprintln!("note: since {plan} was last made, {changed}: what comes of it is done again");
+        say_aside(&format!(
+            "note: since {plan} was last made, {changed}: what comes of it is done again"
+        ));
     }
 }
 

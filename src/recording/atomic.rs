@@ -13,7 +13,7 @@ use tempfile::{Builder, NamedTempFile};
 
 use super::RecordingError;
 use super::placing::{Placing, put_back_or_keep};
-use super::unfinished::{Begun, UNFINISHED, bare, begun, folder_of, is_still_at, lock};
+use super::unfinished::{Begun, UNFINISHED, begun, folder_of, is_still_at, lock, without_place};
 
 pub use super::unfinished::{abandon, make_folder};
 
@@ -42,7 +42,7 @@ fn prepared<E: std::fmt::Display>(
     path: &Path,
     write: impl FnOnce(&mut UnfinishedFile) -> Result<(), E>,
 ) -> Result<(NamedTempFile, Begun), RecordingError> {
-    let fail = |cause: &dyn std::fmt::Display| RecordingError::write(path, cause);
+    let fail = |cause: &dyn std::fmt::Display| RecordingError::write(path, without_place(cause));
     let (file, begun) = {
         let mut begun = begun();
         let file = temporary_file_in(folder_of(path)).map_err(|e| fail(&e))?;
@@ -107,8 +107,9 @@ impl UnfinishedFolder {
             builder.permissions(std::fs::Permissions::from_mode(0o777));
         }
         loop {
-            let made = builder.tempdir_in(target).map_err(bare);
-            let place = made.map_err(|e| RecordingError::write(target, e))?.keep();
+            let made = builder.tempdir_in(target);
+            let fail = |e| RecordingError::write(target, without_place(&e));
+            let place = made.map_err(fail)?.keep();
             // A folder cannot be opened everywhere.
             let alive = File::open(&place)
                 .ok()
@@ -190,7 +191,7 @@ fn temporary_file_in(directory: &Path) -> std::io::Result<NamedTempFile> {
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
     loop {
-        let file = builder.tempfile_in(directory).map_err(bare)?;
+        let file = builder.tempfile_in(directory)?;
         lock(file.as_file());
         if is_still_at(file.as_file(), file.path()) {
             return Ok(file);

@@ -118,10 +118,10 @@ pub(super) fn is_still_at(_file: &File, _path: &Path) -> bool {
 }
 
 /// What the system says of a temporary file, without the name that nobody knows it by.
-pub(super) fn bare(error: std::io::Error) -> std::io::Error {
-    let text = error.to_string();
+pub(super) fn without_place(cause: &dyn std::fmt::Display) -> String {
+    let text = cause.to_string();
     match text.rsplit_once(" at path \"") {
-        Some((cause, _)) => std::io::Error::new(error.kind(), cause.to_owned()),
-        None => error,
+        Some((cause, _)) => cause.to_owned(),
+        None => text,
     }
 }

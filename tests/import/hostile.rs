@@ -139,7 +139,7 @@ fn chunks_that_come_to_more_than_their_file_can_are_refused_with_the_key_that_ta
     refused(&folder, &["log.mcap"], &["more than 256 MB unpacked"]);
     // With the key it is read as far as it goes, and its check sum is wrong.
     folder.write("log.mcap", of_chunk(2_000_000, 2_000_009));
-    refused(&folder, &["log.mcap"], &["Bad chunk CRC"]);
+    refused(&folder, &["log.mcap"], &["Chunk CRC failed"]);
     let keys = "form = \"bag\"\nlargest_mb = 1\n".to_owned() + &channel("force", "\"/a.x\"", "N");
     folder.map("map.toml", &keys);
     refused(&folder, &["log.mcap"], &["more than 1.0 MB unpacked"]);

@@ -133,7 +133,7 @@ fn one(
                 });
             }
             Some(Err(why)) => {
-                eprintln!("note: {}: {why}; diagnosed again", case.display());
+                say_aside(&format!("note: {}: {why}; diagnosed again", case.display()));
                 again = Some(format!("done again: {why}"));
             }
             None => (),

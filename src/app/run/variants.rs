@@ -126,7 +126,10 @@ fn one(
     let existing = existing.and_then(|existing| match existing {
         Ok(result) => Some(result),
         Err(why) => {
-            eprintln!("note: {}: {why}; run again", folder.path().display());
+            say_aside(&format!(
+                "note: {}: {why}; run again",
+                folder.path().display()
+            ));
             None
         }
     });
