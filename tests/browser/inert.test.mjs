@@ -69,7 +69,12 @@ const survives = async (path) => {
   asked.length = 0;
   const { page, faults, requests } = await open(browser, String(pathToFileURL(path)), { viewport: { width: 1024, height: 900 } });
   await page.evaluate(() => document.querySelectorAll("details").forEach((one) => { one.open = true; }));
-  for (const place of await page.locator("figure:visible, .space").all()) await place.scrollIntoViewIfNeeded();
+  await page.evaluate(async () => {
+    for (const place of document.querySelectorAll("figure, .space")) {
+      place.scrollIntoView({ behavior: "instant" });
+      await new Promise((done) => { setTimeout(done, 50); });
+    }
+  });
   for (const image of await page.locator(".sketches img").all()) if (await image.isVisible()) await image.click();
   await page.waitForTimeout(300);
   assert.equal(await page.evaluate(() => window.ran ?? document.title.match(/^ran/)), null);
