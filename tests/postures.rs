@@ -196,7 +196,7 @@ fn what_is_no_case_is_refused_with_one_line_and_nothing_is_written() {
     let still: Vec<&str> = still.iter().map(String::as_str).collect();
     refused(FILE, &of(lines[0], &still), &["two axes"]);
     let without = rows.replace("force_y_n", "lateral");
-    refused(FILE, &without, &["no column `force_y_n`", "lateral"]);
+    refused(FILE, &without, &["no column `force_y_n`", "stills.csv"]);
     let millimetres = stills(2, 8, 0.0, 1e3);
     refused(FILE, &millimetres, &["N mm", "force_unit"]);
     let unit = FILE.to_owned() + "[columns]\ntorque_unit = \"lbf ft\"\n";

@@ -39,7 +39,7 @@ fn a_valid_file_of_every_kind_is_read() {
 
 /// Inputs that broke a reader, as fuzzing found them: `tests/readers/found/DOOR/`.
 #[test]
-fn what_broke_a_reader_once_is_refused() {
+fn what_broke_a_reader_once_is_answered() {
     let room = Room::new(&project(""));
     let mut count = 0;
     for folder in std::fs::read_dir(project("tests/readers/found")).unwrap() {
@@ -48,9 +48,9 @@ fn what_broke_a_reader_once_is_refused() {
         for entry in std::fs::read_dir(&folder).unwrap() {
             let path = entry.unwrap().path();
             let start = Instant::now();
-            let reached = door.open(&room, &std::fs::read(&path).unwrap());
+            // Some are refused, of some what is whole is read; none panics or goes on for long.
+            door.open(&room, &std::fs::read(&path).unwrap());
             let shown = path.display();
-            assert!(reached < Reached::End, "{shown}: read as if it were valid");
             assert!(start.elapsed() < LONGEST, "{shown}: {:?}", start.elapsed());
             count += 1;
         }
