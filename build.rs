@@ -1,4 +1,4 @@
-//! The name of the sources: a hash of all files of `src` and of Cargo.lock, so that two builds of one version can be told apart.
+//! The name of the sources: a hash of all files of `src` and of Cargo.lock, so that two builds of one version can be kept apart.
 
 use std::path::{Path, PathBuf};
 

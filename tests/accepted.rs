@@ -240,7 +240,7 @@ fn every_bench_that_is_accepted_runs_finite_repeats_and_balances() {
         tables.iter().any(|table| path.starts_with(table)) && path != "bench.duration_s"
     });
     assert!(of_bench.len() > 80, "{} keys", of_bench.len());
-    let mut told = String::new();
+    let mut failures = String::new();
     let count = Counter::new([0, 0]);
     for (kind, rest) in BENCHES {
         // Of other loads and without a hand a key has no place.
@@ -269,12 +269,12 @@ fn every_bench_that_is_accepted_runs_finite_repeats_and_balances() {
             Ok(())
         });
         if let Err(error) = outcome {
-            writeln!(told, "{kind}: {error}").unwrap();
+            writeln!(failures, "{kind}: {error}").unwrap();
         }
     }
     let [refused, accepted] = count.get();
     println!("{accepted} benches accepted, {refused} refused");
-    assert!(told.is_empty(), "{told}");
+    assert!(failures.is_empty(), "{failures}");
     assert!(
         accepted > 2 * CASES && refused > CASES / 4,
         "{accepted} accepted, {refused} refused"

@@ -428,7 +428,7 @@ fn of_a_fleet_the_old_tables_stand_or_the_new_ones() {
 }
 
 #[test]
-fn of_an_import_the_old_file_stands_or_the_new_one() {
+fn of_an_import_the_old_file_is_kept_or_the_new_one() {
     let writing = Writing {
         old: Some("import map.toml logs/one.csv --out out.csv --quiet"),
         new: "import map.toml logs/two.csv --out out.csv --quiet --force",

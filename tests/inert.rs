@@ -235,7 +235,7 @@ law = "preston"
 "#;
 
 #[test]
-fn a_row_of_a_table_of_points_is_named_and_another_s_file_is_not_told() {
+fn a_row_of_a_table_of_points_is_named_and_another_s_file_is_not_shown() {
     let bench = Bench::new("plate_edge_ideal");
     let refused = |text: &str| {
         bench.write("points.csv", text);

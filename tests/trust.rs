@@ -1,7 +1,7 @@
 //! Nothing stale, nothing trusted: a result whose inputs have changed, or that is not what was written, is done again and that is said; of two processes that
 //! would write into one place one is refused.
 //!
-//! How many pairs and damages are tried is told by `IDC_PAIRS` and `IDC_DAMAGES`; 200 of each take some minutes.
+//! How many pairs and damages are tried is set by `IDC_PAIRS` and `IDC_DAMAGES`; 200 of each take some minutes.
 
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -46,7 +46,7 @@ fn begun(bench: &Bench, words: &str) -> Child {
         .unwrap()
 }
 
-fn ended(child: Child) -> (Option<i32>, String) {
+fn outcome_of(child: Child) -> (Option<i32>, String) {
     let output = child.wait_with_output().unwrap();
     (
         output.status.code(),
@@ -74,7 +74,7 @@ fn of_two_processes_into_one_place_one_is_refused() {
     let mut met = 0;
     for pair in 0..pairs {
         let (words, out) = commands[pair % commands.len()];
-        let both = [begun(&bench, words), begun(&bench, words)].map(ended);
+        let both = [begun(&bench, words), begun(&bench, words)].map(outcome_of);
         let mut codes = both.each_ref().map(|(code, _)| *code);
         codes.sort_unstable();
         assert_eq!(codes, [Some(0), Some(2)], "{words}: {both:?}");
@@ -147,7 +147,7 @@ fn what_a_killed_run_has_left_goes_with_the_next() {
     while !bench.path("out/tasks").is_dir() || bench.names_in("out/tasks").len() < 3 {
         assert!(
             child.try_wait().unwrap().is_none(),
-            "it ended before it could be killed"
+            "it was done before it could be killed"
         );
         std::thread::sleep(std::time::Duration::from_millis(2));
     }

@@ -257,7 +257,7 @@ fn recordings_are_served_with_their_viewer_on_loopback_alone() {
     let (head, _) = fetch(address, "/", None);
     let start = head
         .lines()
-        .find_map(|line| line.strip_prefix("Location: "))
+        .find_map(|line| line.strip_prefix("location: "))
         .unwrap();
     assert!(
         head.starts_with("HTTP/1.0 302") || head.starts_with("HTTP/1.1 302"),

@@ -143,10 +143,10 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
         policy,
     )?;
     if policy == OverwritePolicy::Keep {
-        match prepared.standing()? {
-            Some(Ok(standing)) => {
+        match prepared.existing()? {
+            Some(Ok(existing)) => {
                 line.end();
-                return show_standing(arguments, &out, &standing);
+                return show_existing(arguments, &out, &existing);
             }
             Some(Err(why)) => {
                 say_aside(&format!("note: {}: {why}; diagnosed again", out.display()))
@@ -178,13 +178,13 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
     Ok(ExitCode::Done)
 }
 
-fn show_standing(
+fn show_existing(
     arguments: &DiagnoseArguments,
     out: &std::path::Path,
-    standing: &one::Standing,
+    existing: &one::Existing,
 ) -> Result<ExitCode, AppError> {
     if arguments.json {
-        say(&standing.document)?;
+        say(&existing.document)?;
     } else if !arguments.quiet {
         say(&format!("{} holds a diagnosis already\n", out.display()))?;
     }

@@ -83,7 +83,7 @@ impl EngineArguments {
         };
         bar.finish_and_clear();
         match done {
-            // What counts is what stands, whatever an engine has heard of it.
+            // What counts is what stands, whatever an engine has received of it.
             Err(TaskError::Failed { of, first, .. }) => match store.missing(Plan::open(plan)?)? {
                 0 => Ok(()),
                 failed => Err(TaskError::Failed { failed, of, first }.into()),
@@ -106,15 +106,15 @@ impl EngineArguments {
 
 /// Says which results were not what was written, and are done again.
 pub(super) fn tell_unfit(unfit: &[Unfit], folder: &Path) {
-    /// Names that are told, and digits of each.
-    const TOLD: usize = 5;
+    /// Names that are shown, and digits of each.
+    const SHOWN: usize = 5;
     const DIGITS: usize = 12;
-    let told = unfit.iter().take(TOLD).map(|one| {
+    let shown = unfit.iter().take(SHOWN).map(|one| {
         let short = one.id.get(..DIGITS).unwrap_or(&one.id);
         format!("{short}: {}", one.why)
     });
-    let told = told.collect::<Vec<_>>().join("; ");
-    let more = match unfit.len().saturating_sub(TOLD) {
+    let shown = shown.collect::<Vec<_>>().join("; ");
+    let more = match unfit.len().saturating_sub(SHOWN) {
         0 => String::new(),
         more => format!("; and {more} more"),
     };
@@ -122,7 +122,7 @@ pub(super) fn tell_unfit(unfit: &[Unfit], folder: &Path) {
         let count = counted(unfit.len(), "result");
         let folder = folder.display();
         say_aside(&format!(
-            "note: done again, as not what was written: {count} in {folder} ({told}{more})"
+            "note: done again, as not what was written: {count} in {folder} ({shown}{more})"
         ));
     }
 }

@@ -37,7 +37,7 @@ Examples:
   idc report runs/step --out runs/step_for_you.html";
 
 /// Length of a picture that a page takes in at most [byte]; ours have a twentieth of it.
-const MOST_OF_PICTURE: u64 = 4_000_000;
+const LARGEST_PICTURE: u64 = 4_000_000;
 
 #[derive(Debug, Args)]
 pub(super) struct ReportArguments {
@@ -159,9 +159,9 @@ fn picture(path: &Path) -> Result<Option<String>, RecordingError> {
     let Some(data) = path.metadata().ok().filter(std::fs::Metadata::is_file) else {
         return Ok(None);
     };
-    if data.len() > MOST_OF_PICTURE {
+    if data.len() > LARGEST_PICTURE {
         let reason = format!(
-            "it has {} bytes, expected a picture of at most {MOST_OF_PICTURE}, as idc run writes it; without the file the page has no picture",
+            "it has {} bytes, expected a picture of at most {LARGEST_PICTURE}, as idc run writes it; without the file the page has no picture",
             data.len()
         );
         return Err(RecordingError::read(path, reason));

@@ -1,4 +1,4 @@
-//! How much a file may hold, and come to when it is unpacked: what is claimed by few bytes is not believed.
+//! How much a file may hold, and come to when it is unpacked: what is claimed by few bytes is not relied on.
 //!
 //! ```text
 //! unpacked <= max(256 MB, 200 size), and 400 MB where all of it is held at once

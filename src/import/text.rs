@@ -60,7 +60,7 @@ pub(super) fn content(
 ) -> Result<(String, DetectedEncoding), ImportError> {
     let bytes = text_bytes(path, limit)?;
     let (text, detected) = decode(path, bytes, encoding)?;
-    let text = ended_alike(text);
+    let text = with_like_ends(text);
     let is_long = |line: &str| line.len() > LONGEST;
     if let Some(line) = text.split('\n').position(is_long) {
         return Err(ImportError::Read {
@@ -76,7 +76,7 @@ pub(super) fn content(
 }
 
 /// A text with its lines ended alike. Of a line that ends with two marks, the reader counts the end to the next one.
-fn ended_alike(text: String) -> String {
+fn with_like_ends(text: String) -> String {
     if !text.contains('\r') {
         return text;
     }

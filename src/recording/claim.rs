@@ -108,7 +108,7 @@ fn unfinished(folder: &Path, start: &str) -> Vec<PathBuf> {
 fn clear(folder: &Path, start: &str) {
     for path in unfinished(folder, start) {
         let is_link = path.is_symlink();
-        // What is locked is being written; what cannot be opened, or knows no locks, cannot be told.
+        // What is locked is being written; what cannot be opened, or knows no locks, is not known.
         let free = || File::open(&path).is_ok_and(|file| lock(&file) == Some(true));
         if is_link || (path.is_file() || path.is_dir()) && free() {
             drop(std::fs::remove_file(&path).or_else(|_| std::fs::remove_dir_all(&path)));

@@ -33,7 +33,7 @@ struct Others {
 }
 
 impl Placing<'_> {
-    /// Puts them there. Where the folder has moved, as to be removed, its new path; `note` is told of it before.
+    /// Puts them there. Where the folder has moved, as to be removed, its new path; `note` gets it before.
     pub(super) fn finish(
         &self,
         note: &mut dyn FnMut(&Path),

@@ -1,4 +1,4 @@
-//! Structures as Parquet writes them (Apache Thrift, compact protocol), walked through without being kept: what they claim is seen before it is believed.
+//! Structures as Parquet writes them (Apache Thrift, compact protocol), walked through without being kept: what they claim is seen before it is relied on.
 
 /// Depth of structures and lists in one another, at most.
 const DEEPEST: usize = 32;

@@ -91,7 +91,7 @@ pub(super) fn folder_of(path: &Path) -> &Path {
     }
 }
 
-/// Takes the lock of an open file or folder; none where that cannot be told, false where another has it.
+/// Takes the lock of an open file or folder; none where that is not known, false where another has it.
 pub(super) fn lock(file: &File) -> Option<bool> {
     match file.try_lock() {
         Ok(()) => Some(true),

@@ -78,8 +78,8 @@ impl Made {
     /// What a plan of now has otherwise, in words; none where that is nothing.
     #[must_use]
     pub fn changed(&self, now: &Self) -> Option<String> {
-        /// Names that are told.
-        const TOLD: usize = 3;
+        /// Names that are shown.
+        const SHOWN: usize = 3;
         if self.program != now.program {
             return Some(format!("the program changed (it was {})", self.program));
         }
@@ -92,16 +92,16 @@ impl Made {
             .filter(other)
             .map(|(file, _)| file.as_str());
         let names: Vec<&str> = names.collect();
-        let told = names
+        let shown = names
             .iter()
-            .take(TOLD)
+            .take(SHOWN)
             .copied()
             .collect::<Vec<_>>()
             .join(", ");
         match names.len() {
             0 => None,
-            1..=TOLD => Some(format!("{told} changed")),
-            count => Some(format!("{told} and {} others changed", count - TOLD)),
+            1..=SHOWN => Some(format!("{shown} changed")),
+            count => Some(format!("{shown} and {} others changed", count - SHOWN)),
         }
     }
 }

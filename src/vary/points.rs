@@ -406,7 +406,7 @@ mod tests {
             let refused = read(text).unwrap_err().to_string();
             assert!(refused.contains(expected), "{text}: {refused}");
         }
-        // Of a file that is no such table nothing is told.
+        // Of a file that is no such table nothing is shown.
         let refused = read("root:$y$secret:19000\nb\n").unwrap_err().to_string();
         assert!(!refused.contains("secret"), "{refused}");
     }

@@ -125,10 +125,10 @@ fn one(
     let prepared = Prepared::new(case, (cell, None, limit), out, policy)?;
     let mut again = None;
     if policy == OverwritePolicy::Keep {
-        match prepared.standing()? {
-            Some(Ok(standing)) => {
+        match prepared.existing()? {
+            Some(Ok(existing)) => {
                 return Ok(Done {
-                    answer: standing.answer,
+                    answer: existing.answer,
                     note: Some(KEPT.to_owned()),
                 });
             }

@@ -66,7 +66,7 @@ impl Subject {
 }
 
 /// A diagnosis that stands, with diagnosis.json.
-pub(super) struct Standing {
+pub(super) struct Existing {
     /// The finding.
     pub answer: Answer,
     /// diagnosis.json.
@@ -127,7 +127,7 @@ impl Prepared {
     }
 
     /// The diagnosis that stands complete, of the same files and settings; or why what stands is none. Neither where nothing stands.
-    pub(super) fn standing(&self) -> Result<Option<Result<Standing, String>>, AppError> {
+    pub(super) fn existing(&self) -> Result<Option<Result<Existing, String>>, AppError> {
         let folder = self.folder.path();
         let document = match read_sealed(&folder.join(DIAGNOSIS), &self.asked) {
             Ok(document) => document,
@@ -146,7 +146,7 @@ impl Prepared {
         let now = self.subject.provenance()?;
         Ok(Some(match answer.details.provenance.changed(&now) {
             Some(why) => Err(why),
-            None => Ok(Standing { answer, document }),
+            None => Ok(Existing { answer, document }),
         }))
     }
 

@@ -239,7 +239,7 @@ impl WebPage {
     }
 }
 
-/// What a browser is told with every answer: nothing here is of another kind than it says, nor for another page.
+/// What a browser gets with every answer: nothing here is of another kind than it says, nor for another page.
 const ALWAYS: [(&str, &str); 3] = [
     ("x-content-type-options", "nosniff"),
     ("cross-origin-resource-policy", "same-origin"),

@@ -28,7 +28,7 @@ impl Patient {
     }
 
     /// What came of writing; where nothing was taken, the patience that is left.
-    fn judged<T>(
+    fn timed<T>(
         &mut self,
         written: Poll<Result<T, Error>>,
         context: &mut Context<'_>,
@@ -64,7 +64,7 @@ impl AsyncWrite for Patient {
         bytes: &[u8],
     ) -> Poll<Result<usize, Error>> {
         let written = Pin::new(&mut self.stream).poll_write(context, bytes);
-        self.judged(written, context)
+        self.timed(written, context)
     }
 
     fn poll_write_vectored(
@@ -73,7 +73,7 @@ impl AsyncWrite for Patient {
         pieces: &[IoSlice<'_>],
     ) -> Poll<Result<usize, Error>> {
         let written = Pin::new(&mut self.stream).poll_write_vectored(context, pieces);
-        self.judged(written, context)
+        self.timed(written, context)
     }
 
     fn is_write_vectored(&self) -> bool {

@@ -1,4 +1,4 @@
-//! What a browser is told that a page may do: nothing over a network, and of scripts only those that this program wrote, each by its hash, so that one that comes
+//! What a page may do, for the browser: nothing over a network, and of scripts only those that this program wrote, each by its hash, so that one that comes
 //! in with a name or a picture does not run.
 
 use base64::Engine as _;

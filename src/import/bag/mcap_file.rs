@@ -15,7 +15,7 @@ use super::message::{Message, Schema, There};
 use crate::file::{guarded, megabytes};
 use crate::import::packed::Budget;
 
-/// Bytes that are read at once, at most: a length is not believed before what it tells of is there.
+/// Bytes that are read at once, at most: a length is not relied on before its bytes are there.
 const PIECE: usize = 1 << 20;
 /// Bytes of a record before its content: its kind and its length.
 const HEAD: usize = 9;

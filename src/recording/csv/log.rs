@@ -79,7 +79,7 @@ pub(in super::super) fn no_stamps(path: &Path, names: &[String]) -> RecordingErr
         path: path.to_owned(),
         column: TIME.to_owned(),
         found: "missing".to_owned(),
-        // Their names are not told: a case from elsewhere may name any file of this machine.
+        // Their names are not shown: a case from elsewhere may name any file of this machine.
         expected: format!("it beside the {} columns that there are", names.len()),
     }
 }

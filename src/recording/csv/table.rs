@@ -106,7 +106,7 @@ fn places(
     let known = || std::iter::once(TIME).chain(columns.iter().map(|column| column.name));
     let mut ignored = Vec::new();
     for (index, name) in header.iter().enumerate() {
-        // Of a file that is no recording nothing is told.
+        // Of a file that is no recording nothing is shown.
         let is_ours = header.iter().any(|name| name == TIME);
         if is_ours && header.iter().take(index).any(|other| other == name) {
             return Err(refuse(name, "there twice".to_owned(), "it once".to_owned()));
