@@ -97,6 +97,8 @@ const KEYS: [(&str, &str); 18] = [
     ("docs/notebook/analyse.ipynb", "<th>believed</th>"),
     ("docs/notebook/analyse.ipynb", "channel     believed"),
     ("scenarios/README.md", "[believed]"),
+    ("tests/inert.rs", "[believed]"),
+    ("src/import/text/record.rs", "DoubleEndedIterator"),
     ("src/app/diagnose/comparison_files.rs", "\"believed\""),
     ("src/case/error.rs", "`believed.reference_volume_mm3`"),
     ("src/case/removal_table.rs", "[believed]"),
