@@ -88,7 +88,7 @@ const LEFT_OUT: [&str; 4] = [
 ];
 
 /// Keys and columns that files hold and others read: a part of a path, and the text.
-const KEYS: [(&str, &str); 18] = [
+const KEYS: [(&str, &str); 20] = [
     ("assets/new/removal_table.toml", "[believed]"),
     ("assets/schemas/removal_table.json", "\"believed\""),
     ("docs/GLOSSARY.md", "`believed`"),
