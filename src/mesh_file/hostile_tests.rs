@@ -123,7 +123,7 @@ fn points_are_read_once_and_kept_where_triangles_use_them() {
 }
 
 #[test]
-fn counts_that_are_claimed_are_not_relied_on() {
+fn counts_that_are_claimed_reserve_nothing() {
     let ply = |elements: &str| {
         format!(
             "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n{elements}end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"

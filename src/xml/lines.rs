@@ -1,4 +1,4 @@
-//! Lines of a text: counted once, so that thousands of elements can each be named with their own.
+//! Lines of a text: counted once, so that each of thousands of elements can be reported with its own.
 
 /// Where the lines of a text begin.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn depth_is_counted_whatever_is_in_values_and_comments() {
+    fn depth_is_counted_whatever_values_and_comments_hold() {
         let nested = |count: usize, tag: &str| {
             format!("<r>{}{}</r>", tag.repeat(count), "</a>".repeat(count))
         };
