@@ -332,7 +332,9 @@ fn the_checkers_see_what_they_look_for() {
 fn files_are_opened_for_reading_by_one_module() {
     for (file, tokens) in crate::source::sources() {
         // A folder is locked by opening it.
-        if file.starts_with("file/") || file == "recording/atomic.rs" {
+        if file.starts_with("file/")
+            || ["recording/atomic.rs", "recording/claim.rs"].contains(&file.as_str())
+        {
             continue;
         }
         for four in tokens.windows(4) {
