@@ -229,7 +229,7 @@ mod tests {
                 "60",
                 &own,
             ),
-            // Fixed and varied are told apart.
+            // Fixed and varied are distinguished.
             of(
                 "idc 1",
                 &shared(&[("process.force_n", "60")], "external_leak"),
