@@ -52,7 +52,9 @@ fn a_title_does_nothing_to_a_terminal_in_any_command() {
     // Colours, and nothing else, are let through.
     assert!(outcome.out.contains("\u{1b}[1m"), "{}", outcome.out);
     for colour in ["0", "1", "2", "31", "32", "33", "1;31", "38;5;9", "38;5;10"] {
-        outcome.out = outcome.out.replace(&format!("\u{1b}[{colour}m"), "");
+        for text in [&mut outcome.out, &mut outcome.err] {
+            *text = text.replace(&format!("\u{1b}[{colour}m"), "");
+        }
     }
     is_inert(&outcome, shown);
     // Programs get the title itself.

@@ -88,7 +88,7 @@ const LEFT_OUT: [&str; 4] = [
 ];
 
 /// Keys and columns that files hold and others read: a part of a path, and the text.
-const KEYS: [(&str, &str); 20] = [
+const KEYS: [(&str, &str); 19] = [
     ("assets/new/removal_table.toml", "[believed]"),
     ("assets/schemas/removal_table.json", "\"believed\""),
     ("docs/GLOSSARY.md", "`believed`"),
@@ -98,7 +98,6 @@ const KEYS: [(&str, &str); 20] = [
     ("docs/notebook/analyse.ipynb", "channel     believed"),
     ("scenarios/README.md", "[believed]"),
     ("tests/inert.rs", "[believed]"),
-    ("src/import/text/record.rs", "DoubleEndedIterator"),
     ("src/app/diagnose/comparison_files.rs", "\"believed\""),
     ("src/case/error.rs", "`believed.reference_volume_mm3`"),
     ("src/case/removal_table.rs", "[believed]"),

@@ -386,9 +386,6 @@ fn make_cases(out: &Path, which: &Which<'_>, quiet: bool) -> Result<Vec<String>,
     let made = made?;
     let mut files = Vec::new();
     note_files(unfinished.path(), Path::new(""), &mut files).map_err(cannot)?;
-    for file in &files {
-        make_folder(out.join(file).parent().unwrap_or(out)).map_err(cannot)?;
-    }
     let names: Vec<&str> = files.iter().map(String::as_str).collect();
     unfinished.finish(&names, &[], &[])?;
     Ok(made)

@@ -28,8 +28,8 @@ pub(super) struct Placing<'a> {
 /// What else stands in the target, and is to stay.
 #[derive(Default)]
 struct Others {
-    files: Vec<std::ffi::OsString>,
-    folders: Vec<std::ffi::OsString>,
+    files: Vec<PathBuf>,
+    folders: Vec<PathBuf>,
 }
 
 impl Placing<'_> {
@@ -46,6 +46,9 @@ impl Placing<'_> {
         }
         let pair = |name: &&str| (self.place.join(name), self.target.join(name));
         let moves: Vec<_> = self.names.iter().map(pair).collect();
+        for (_, to) in &moves {
+            fs::create_dir_all(folder_of(to)).map_err(|e| RecordingError::write(to, e))?;
+        }
         let gone: Vec<_> = self
             .gone
             .iter()
@@ -97,23 +100,30 @@ impl Placing<'_> {
     /// What else stands in the target; none where that cannot be taken along.
     fn others(&self, target: &Path) -> Result<Option<Others>, Error> {
         let mut others = Others::default();
-        for entry in fs::read_dir(target)? {
-            let entry = entry?;
-            let name = entry.file_name();
-            let text = name.to_string_lossy();
-            let kind = entry.file_type()?;
-            let known = |names: &[&str]| names.contains(&text.as_ref());
-            let claimed = format!("{UNFINISHED}claim");
-            if entry.path().file_name() == self.place.file_name() || text == claimed {
-                continue;
-            }
-            if kind.is_dir() && known(self.along) {
-                others.folders.push(name);
-            } else if !kind.is_file() || text.starts_with(UNFINISHED) {
-                // Another process's among them.
-                return Ok(None);
-            } else if !known(self.names) && !known(self.gone) {
-                others.files.push(name);
+        let mut folders = vec![PathBuf::new()];
+        while let Some(folder) = folders.pop() {
+            for entry in fs::read_dir(target.join(&folder))? {
+                let entry = entry?;
+                let path = folder.join(entry.file_name());
+                let text = entry.file_name().to_string_lossy().into_owned();
+                let kind = entry.file_type()?;
+                let known = |names: &[&str]| names.iter().any(|name| Path::new(name) == path);
+                let claimed = format!("{UNFINISHED}claim");
+                if entry.path().file_name() == self.place.file_name() || text == claimed {
+                    continue;
+                }
+                if kind.is_dir() && known(self.along) {
+                    others.folders.push(path);
+                } else if kind.is_dir()
+                    && self.names.iter().any(|n| Path::new(n).starts_with(&path))
+                {
+                    folders.push(path);
+                } else if !kind.is_file() || text.starts_with(UNFINISHED) {
+                    // Another process's among them.
+                    return Ok(None);
+                } else if !known(self.names) && !known(self.gone) {
+                    others.files.push(path);
+                }
             }
         }
         Ok(Some(others))

@@ -39,7 +39,7 @@ impl Record {
     }
 
     /// Its fields, in order.
-    pub fn iter(&self) -> impl DoubleEndedIterator<Item = &str> + Clone {
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &str> + Clone {
         (0..self.len()).map(|place| self.get(place).unwrap_or_default())
     }
 }

@@ -320,7 +320,7 @@ impl End {
         if self.is_whole || taken < rows.len() {
             return None;
         }
-        let length = |row: &Record| row.iter().next_back().map_or(0, str::len);
+        let length = |row: &Record| row.iter().last().map_or(0, str::len);
         let is_shorter = before
             .last()
             .is_some_and(|(_, other)| length(row) < length(other));
