@@ -455,11 +455,13 @@ fn of_a_study_the_old_files_stand_or_the_new_ones() {
         let text = text
             .unwrap()
             .replace("../../models/device.toml", "device.toml");
+        let other = text.replace("seed = 1", "seed = 2");
         bench.write(&format!("{name}.toml"), text);
+        bench.write(&format!("{name}_other.toml"), other);
     }
     let writing = Writing {
         old: Some("design device_design.toml --evaluations 10 --out out --quiet"),
-        new: "design device_design.toml --evaluations 14 --out out --quiet --force",
+        new: "design device_design_other.toml --evaluations 10 --out out --quiet --force",
         results: &["out"],
         timed: &[],
         calls: 15,

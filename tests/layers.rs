@@ -331,8 +331,9 @@ fn the_checkers_see_what_they_look_for() {
 #[test]
 fn files_are_opened_for_reading_by_one_module() {
     for (file, tokens) in crate::source::sources() {
-        // A folder is locked by opening it.
+        // A folder is locked by opening it; tests read what they wrote.
         if file.starts_with("file/")
+            || file.ends_with("/tests.rs")
             || ["recording/atomic.rs", "recording/claim.rs"].contains(&file.as_str())
         {
             continue;

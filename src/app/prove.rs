@@ -20,7 +20,7 @@ use crate::proof::{
 };
 use crate::quantity::counted;
 use crate::recording::atomic::{UnfinishedFolder, make_folder, write_text};
-use crate::recording::claim::clear_unfinished;
+use crate::recording::claim::{clear_beside, clear_unfinished};
 
 /// The cases that come with the project, from its folder.
 const CASES: &str = "assets/proof/cases";
@@ -328,6 +328,7 @@ pub(super) fn run_laboratory(arguments: &LaboratoryArguments) -> Result<ExitCode
     }
     let _claim = claim_folder(out)?;
     clear_unfinished(out);
+    clear_beside(out, &[]);
     let quiet = arguments.quiet || arguments.json;
     let plan = |count: u64, conditions: CaseConditions| DrawPlan {
         count,
