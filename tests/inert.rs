@@ -51,7 +51,9 @@ fn a_title_does_nothing_to_a_terminal_in_any_command() {
     let mut outcome = bench.idc(&coloured, &[]);
     // Colours, and nothing else, are let through.
     assert!(outcome.out.contains("\u{1b}[1m"), "{}", outcome.out);
-    for colour in ["0", "1", "2", "31", "32", "33", "39", "1;31", "38;5;9", "38;5;10"] {
+    for colour in [
+        "0", "1", "2", "31", "32", "33", "39", "1;31", "38;5;9", "38;5;10",
+    ] {
         for text in [&mut outcome.out, &mut outcome.err] {
             *text = text.replace(&format!("\u{1b}[{colour}m"), "");
         }
