@@ -203,6 +203,9 @@ impl<T: Content> Filled for Toleranced<T> {
     }
 }
 
+/// How far the ends of an interval may lie beyond the range of their key, in its widths.
+const REACH: f64 = 10.0;
+
 impl<T: Content> Toleranced<T> {
     /// Least and largest value of each component, within the range of its key; `section` is the table in which `key` stands.
     pub fn bounds(
@@ -227,6 +230,9 @@ impl<T: Content> Toleranced<T> {
             [Some(_), None] => return Err(own.missing("high", "it to be given beside low")),
             [None, Some(_)] => return Err(own.missing("low", "it to be given beside high")),
         };
+        // An interval that a diagnosis found may reach beyond what there can be, but no search ends in one of another order.
+        let reach = REACH * (range[1] - range[0]);
+        let widest = [range[0] - reach, range[1] + reach];
         let mut bounds = Vec::with_capacity(values.len());
         for (index, value) in values.iter().enumerate() {
             let end = |ends: &Option<Vec<f64>>, usual: f64| match ends {
@@ -244,6 +250,10 @@ impl<T: Content> Toleranced<T> {
                 if !right {
                     let side = if name == "low" { "most" } else { "least" };
                     let expected = format!("at {side} the value, {}", plain(*value));
+                    return Err(own.refuse(name, plain(end), expected));
+                }
+                if !(widest[0] <= end && end <= widest[1]) {
+                    let expected = unit.show_range(widest[0]..=widest[1]);
                     return Err(own.refuse(name, plain(end), expected));
                 }
             }

@@ -278,6 +278,11 @@ fn what_cannot_be_is_refused_by_its_key() {
             "at most the value",
         ),
         (
+            "low = 20.0, high = 60.0",
+            "low = 20.0, high = 1e300",
+            "`high",
+        ),
+        (
             "value = 10.0, tolerance = 0.1",
             "value = 10.0, tolerance = 1.5",
             "0 to 1",

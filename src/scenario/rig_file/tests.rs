@@ -344,6 +344,11 @@ fn values_that_are_wrong_are_refused_with_what_was_expected() {
         "10:34: `cylinder.moving_mass_kg.low` is 5.1, expected at most the value, 5.09",
     );
     refused(
+        "{ value = 5.09, tolerance = 0.01 }",
+        "{ value = 5.09, low = -1e300, high = 5.2 }",
+        "10:34: `cylinder.moving_mass_kg.low` is -1e300, expected no farther from the value than 1000 times itself",
+    );
+    refused(
         "force_n = 0.8",
         "force_n = { value = 0.8, tolerance = 0.1 }",
         "38:1: `sensors.force_n` cannot stand here: this number is taken to be exact",

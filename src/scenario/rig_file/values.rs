@@ -151,6 +151,9 @@ fn exact(
     checked(section, key, number.value, range)
 }
 
+/// Largest half-width of an interval, as a share of its value.
+const WIDEST: f64 = 1000.0;
+
 /// Relative half-width of the tolerance of a number, whose table is `section`; 0 for an exact one.
 pub(super) fn tolerance(section: &Section<'_>, number: &Number) -> Result<f64, ScenarioError> {
     let value = number.value;
@@ -174,6 +177,13 @@ pub(super) fn tolerance(section: &Section<'_>, number: &Number) -> Result<f64, S
         if !(high.is_finite() && high >= value) {
             let expected = format!("at least the value, {}", plain(value));
             return Err(section.refuse("high", plain(high), expected));
+        }
+        // A search over more orders of magnitude comes to no end.
+        for (key, end) in [("low", low), ("high", high)] {
+            if value != 0.0 && (end - value).abs() > WIDEST * value.abs() {
+                let expected = format!("no farther from the value than {WIDEST} times itself");
+                return Err(section.refuse(key, plain(end), expected));
+            }
         }
     }
     let of_interval = |(low, high): (f64, f64)| {
