@@ -86,6 +86,7 @@ impl Press {
             },
             part,
             friction: law.friction,
+            most_held: 1,
         });
         // A piston that the air does not feel.
         let device = Device::new(DeviceParameters {

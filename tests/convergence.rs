@@ -1,6 +1,8 @@
 //! Halved steps: the results do not hang on the step.
 
+use idc_cell::cell::Cell;
 use idc_cell::metrics::Summary;
+use idc_cell::path::Phase;
 use idc_cell::recording::{Recording, schema};
 use idc_cell::rig::Rig;
 use idc_cell::scenario::bench::{CommandScenario, HandScenario};
@@ -35,6 +37,74 @@ fn halving_both_steps_moves_nothing_that_matters() {
         );
         assert!(force < 0.002 && stroke < 0.002, "{force} {stroke}");
         assert!((a - b).abs() < 0.05, "{a} against {b}");
+    }
+}
+
+/// A signal of the whole cell, and the scale of its size.
+type Signal = (&'static str, f64);
+
+/// Signals of the coupled step outside of impacts: arm, slide, contact, device.
+const SIGNALS: [Signal; 8] = [
+    ("joint_1_position", 1.0),
+    ("joint_2_position", 1.0),
+    ("joint_3_position", 1.0),
+    ("joint_5_position", 1.0),
+    (schema::STROKE, 0.05),
+    (schema::CONTACT_FORCE, 150.0),
+    (schema::DEVICE_FORCE, 150.0),
+    (schema::CHAMBER_1_PRESSURE, 6e5),
+];
+/// Steps, each half of the one before, and the one against which their errors are [s].
+const HALVED: [f64; 5] = [2e-3, 1e-3, 5e-4, 2.5e-4, 1.25e-4];
+const FINEST: f64 = 2.5e-5;
+
+/// A signal while the edge is followed, by the coarsest step.
+fn followed(step: f64) -> Vec<Vec<f64>> {
+    let mut scenario = scenario("plate_edge_ideal");
+    scenario.simulation.step = step;
+    let cell = Cell::new(scenario).unwrap();
+    let (_, start, end) = cell
+        .plan
+        .phases()
+        .into_iter()
+        .find(|(phase, ..)| *phase == Phase::Follow)
+        .unwrap();
+    let recording = cell.run(&mut |_| ()).unwrap().recording;
+    let rows: Vec<usize> = (1..)
+        .map(|i| f64::from(i) * HALVED[0])
+        .skip_while(|time| *time < start + 0.2)
+        .take_while(|time| *time < end - 0.2)
+        .map(|time| (time / step).round() as usize - 1)
+        .collect();
+    let values = |(name, _): &Signal| {
+        let values = recording.values(name).unwrap();
+        rows.iter().map(|row| values[*row]).collect()
+    };
+    SIGNALS.iter().map(values).collect()
+}
+
+// Catches: what is taken at the start or the end of a step where its middle is meant; a part of the step that knows nothing of what another did in it.
+#[test]
+fn the_whole_step_converges_by_the_second_order() {
+    let finest = followed(FINEST);
+    let errors = HALVED.map(|step| {
+        let coarse = followed(step);
+        let signals = coarse.iter().zip(&finest).zip(SIGNALS);
+        let error = |((coarse, finest), (_, scale)): ((&Vec<f64>, &Vec<f64>), Signal)| {
+            let pairs = coarse.iter().zip(finest);
+            let sum: f64 = pairs.map(|(a, b)| ((a - b) / scale).powi(2)).sum();
+            (sum / finest.len() as f64).sqrt()
+        };
+        signals.map(error).collect::<Vec<f64>>()
+    });
+    for (signal, (name, _)) in SIGNALS.iter().enumerate() {
+        let errors = errors.each_ref().map(|errors| errors[signal]);
+        let order = (errors[0] / errors[4]).log2() / 4.0;
+        println!("{name}: {errors:.2?} at {HALVED:?} s, order {order:.2}");
+        for (error, step) in errors.iter().zip(HALVED) {
+            println!("    {:.3} ms: {error:.3e}", step * 1e3);
+        }
+        assert!(order >= 1.8, "{name}: {order}");
     }
 }
 

@@ -13,19 +13,24 @@ use idc_cell::control::law::JointLaw;
 use idc_cell::path::{Phase, Reference};
 use idc_cell::plant::Touch;
 use idc_cell::plant::{ContactParameters, Relief};
-use idc_cell::scenario::load;
+use idc_cell::scenario::{Scenario, load};
 use idc_cell::simulation::world::{World, WorldDescription};
 use idc_cell::simulation::{Simulation, StepTimes};
 
 /// Time at the start of the following phase that is not timed, so that the motion is under way [s].
 const LEAD: f64 = 0.5;
 
-/// The cell of a scenario of the project.
-pub fn cell(name: &str) -> Result<Cell, Box<dyn Error>> {
+/// A scenario of the project.
+pub fn scenario(name: &str) -> Result<Scenario, Box<dyn Error>> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join("scenarios")
         .join(name);
-    Ok(Cell::new(load(&path)?)?)
+    Ok(load(&path)?)
+}
+
+/// The cell of a scenario of the project.
+pub fn cell(name: &str) -> Result<Cell, Box<dyn Error>> {
+    Ok(Cell::new(scenario(name)?)?)
 }
 
 /// When the following phase starts and ends [s].
@@ -146,7 +151,10 @@ pub fn servo_gains(cell: &Cell) -> Vec<(f64, f64)> {
 /// The rigid-body world alone, holding the arm where following is under way; the ball on the edge, or `lift` [m] off it.
 pub fn holding_world(cell: &Cell, lift: f64) -> Holding {
     let scenario = &cell.setup.scenario;
-    let mut world = World::new(&WorldDescription::of(cell));
+    let mut world = World::new(&WorldDescription {
+        most_held: 1,
+        ..WorldDescription::of(cell)
+    });
     let reference = cell.plan.reference(follow_span(cell).0 + LEAD);
     let count = cell.setup.arm_with_slide.len();
     let stroke = scenario.process.working_stroke - lift;

@@ -2,7 +2,10 @@
 //!
 //! ```text
 //! cargo bench --bench step
+//! cargo bench --bench step -- precision
 //! ```
+//!
+//! The second draws error over cost alone (`precision`).
 //!
 //! On one core, the same for both. First each part alone (criterion), then interleaved rounds of the whole cell, the whole cell with its parts timed,
 //! the whole cell of deburred_edge (seals, air that warms up, a tool that turns, removal), the rigid bodies alone, and MuJoCo on the same arm, load and path; the table at the end holds their medians. The timed parts of a step include the
@@ -11,6 +14,7 @@
 mod job;
 mod parts;
 mod peer;
+mod precision;
 
 use std::error::Error;
 use std::process::Command;
@@ -33,11 +37,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     let cell = job::cell("plate_edge_ideal.toml")?;
     let deburring = job::cell("deburred_edge.toml")?;
     println!("{}", pin_to_one_core());
+    if std::env::args().any(|argument| argument == "precision") {
+        return precision::compare("plate_edge_ideal.toml");
+    }
     let mut criterion = parts::criterion();
     parts::all(&mut criterion, &cell);
     criterion.final_summary();
     if measuring {
         compare(&cell, &deburring)?;
+        precision::compare("plate_edge_ideal.toml")?;
     }
     Ok(())
 }
@@ -133,7 +141,11 @@ fn compare(cell: &Cell, deburring: &Cell) -> Result<(), Box<dyn Error>> {
 }
 
 fn per_step(time: Duration) -> f64 {
-    time.as_secs_f64() / STEPS as f64
+    per_step_of(time, STEPS)
+}
+
+fn per_step_of(time: Duration, steps: usize) -> f64 {
+    time.as_secs_f64() / steps as f64
 }
 
 fn print_ours(rounds: &mut Rounds) {

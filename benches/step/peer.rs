@@ -40,6 +40,21 @@ pub struct Round {
     pub force_deviation: f64,
 }
 
+/// Its error and cost by one of its integrators at one step.
+#[derive(Debug, Deserialize)]
+pub struct Precision {
+    /// The integrator.
+    pub integrator: String,
+    /// Step [s].
+    pub step: f64,
+    /// Time that a simulated second takes [s].
+    pub cost: f64,
+    /// 90th percentile of the joints' errors [rad].
+    pub joints: f64,
+    /// The same of the ball's centre [m].
+    pub tip: f64,
+}
+
 /// The running process.
 pub struct Peer {
     child: Child,
@@ -59,6 +74,23 @@ fn interpreter() -> Option<PathBuf> {
 impl Peer {
     /// Starts it on the cell's following phase; `Err` says why there is none.
     pub fn start(cell: &Cell, steps: usize) -> Result<Self, String> {
+        let (follow, step) = (follow_span(cell).0, cell.setup.scenario.simulation.step);
+        let times: Vec<f64> = (1..=steps).map(|i| follow + i as f64 * step).collect();
+        Self::on(cell, &scene(cell, &times, None)?)
+    }
+
+    /// The same with the slide's force as a record holds it [N], at times from the start of following on [s] so far apart.
+    pub fn led(cell: &Cell, record: &[f64], apart: f64) -> Result<Self, String> {
+        let follow = follow_span(cell).0;
+        let times: Vec<f64> = (0..record.len())
+            .map(|i| follow + i as f64 * apart)
+            .collect();
+        let mut scene = scene(cell, &times, Some(record))?;
+        scene["step"] = json!(apart);
+        Self::on(cell, &scene)
+    }
+
+    fn on(cell: &Cell, scene: &Value) -> Result<Self, String> {
         let python = interpreter()
             .ok_or("no Python with it: run .ci/install_references or set IDC_PYTHON to an interpreter that has the package mujoco")?;
         let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/mujoco_peer.py");
@@ -72,7 +104,7 @@ impl Peer {
             return Err("its standard input and output are not ours".to_owned());
         };
         let mut replies = BufReader::new(replies);
-        writeln!(requests, "{}", scene(cell, steps)?).map_err(|error| error.to_string())?;
+        writeln!(requests, "{scene}").map_err(|error| error.to_string())?;
         let ready: Ready = reply(&mut replies)?;
         let desired = cell.setup.scenario.process.force;
         if (ready.static_force / desired - 1.0).abs() > FORCE_TOLERANCE {
@@ -94,6 +126,18 @@ impl Peer {
         writeln!(self.requests, "round").map_err(|error| error.to_string())?;
         reply(&mut self.replies)
     }
+
+    /// Lets it follow the edge by each of its integrators at steps [s], held against its own run at the finest one at times so far apart.
+    pub fn precision(
+        &mut self,
+        steps: &[f64],
+        finest: f64,
+        apart: f64,
+    ) -> Result<Vec<Precision>, String> {
+        let request = json!({ "steps": steps, "finest": finest, "apart": apart });
+        writeln!(self.requests, "{request}").map_err(|error| error.to_string())?;
+        reply(&mut self.replies)
+    }
 }
 
 impl Drop for Peer {
@@ -113,8 +157,8 @@ fn reply<T: for<'a> Deserialize<'a>>(replies: &mut BufReader<ChildStdout>) -> Re
     serde_json::from_str(&line).map_err(|_| format!("mujoco_peer.py said: {}", line.trim()))
 }
 
-/// The cell in the arm's base frame, as mujoco_peer.py reads it.
-fn scene(cell: &Cell, steps: usize) -> Result<Value, String> {
+/// The cell in the arm's base frame, as mujoco_peer.py reads it, its drives' inputs at times [s]; the slide's force [N] as a record holds it, if there is one.
+fn scene(cell: &Cell, times: &[f64], record: Option<&[f64]>) -> Result<Value, String> {
     let scenario = &cell.setup.scenario;
     let nominal = &scenario.nominal;
     let base_from_world = scenario.arm.world_from_base.inverse();
@@ -133,10 +177,19 @@ fn scene(cell: &Cell, steps: usize) -> Result<Value, String> {
     let count = cell.setup.arm_with_slide.len();
     let mut start_position = start.position[..count].to_vec();
     start_position[count - 1] = scenario.process.working_stroke;
-    let rows: Vec<_> = (1..=steps)
-        .map(|i| Row::at(cell, follow + i as f64 * step, &gains))
+    let row = |i: usize, time: f64| {
+        let mut row = Row::at(cell, time, &gains);
+        if let (Some(force), Some(slide)) = (record, row.applied.last_mut()) {
+            *slide = force[i];
+        }
+        row
+    };
+    let rows: Vec<_> = times
+        .iter()
+        .enumerate()
+        .map(|(i, time)| row(i, *time))
         .collect();
-    let hold = Row::at(cell, follow, &gains);
+    let hold = row(0, follow);
     Ok(json!({
         "urdf": scenario.arm.urdf,
         "flange": scenario.arm.flange_link,

@@ -143,10 +143,15 @@ impl EdgeState {
             slope: 0.0,
         };
         let mut drop = 0.0;
-        for i in at(place - reach).floor() as isize..=at(place + reach).floor() as isize {
-            let (left, right) = (height(i), height(i + 1));
-            let tilt = (right - left) / self.spacing;
+        let mut look = |i: isize| {
             let start = (i as f64 + 0.5) * self.spacing - place;
+            let near = start.max(-start - self.spacing).max(0.0);
+            let (left, right) = (height(i), height(i + 1));
+            // It rides no higher anywhere on the segment than on the higher of its ends would stand at the nearer.
+            if left.max(right) - 0.5 * near * near / radius <= best.lift {
+                return high - 0.5 * near * near / radius > best.lift;
+            }
+            let tilt = (right - left) / self.spacing;
             // Where the ball is parallel to the segment, or its end nearer to that.
             let tangent = radius * tilt / tilt.mul_add(tilt, 1.0).sqrt();
             let u = tangent.clamp(start, start + self.spacing);
@@ -156,7 +161,16 @@ impl EdgeState {
                 best = Ride { lift, slope: u };
                 drop = root;
             }
-        }
+            true
+        };
+        // From the segment under the ball outwards, each way until none can carry it.
+        let under = at(place).floor() as isize;
+        let [first, end] = [place - reach, place + reach].map(|place| at(place).floor() as isize);
+        look(under);
+        let mut behind = (first..under).rev();
+        while behind.next().is_some_and(&mut look) {}
+        let mut ahead = under + 1..=end;
+        while ahead.next().is_some_and(&mut look) {}
         best.slope /= drop.max(1e-3 * radius);
         best
     }

@@ -158,6 +158,12 @@ impl PartContact {
         self.contacts.with(|contacts| *contacts = pressing);
     }
 
+    /// Has nothing pressed over the engine's coming step.
+    pub(super) fn lift(&mut self) {
+        self.contacts.with(Vec::clear);
+        self.stepped = true;
+    }
+
     /// Mass that a push along `direction` at `point` feels, as Rapier's solver will see it [kg]; unknown before the first step.
     fn effective_mass(
         &mut self,

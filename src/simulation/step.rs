@@ -10,7 +10,6 @@ mod stored;
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use glamx::DPose3;
 
 use self::saturation::Saturation;
 use super::cutting::Cutting;
@@ -20,7 +19,6 @@ use super::slide::{self, SlideStep};
 use super::world::{World, WorldDescription};
 use crate::arm::chain::MAX_JOINTS;
 use crate::arm::dynamics::inverse_dynamics;
-use crate::arm::kinematics::point_force_torques;
 use crate::cell::Cell;
 use crate::collision::ClearanceWatch;
 use crate::control::force::{ForceController, ForceObservation};
@@ -509,11 +507,8 @@ impl<'a> Simulation<'a> {
         );
         if cell.setup.scenario.arm.servo.contact_feed_forward {
             let contact = (device - torque[n]) / reference.share;
-            let mut links = [DPose3::IDENTITY; MAX_JOINTS];
-            self.world.link_poses(&mut links);
             let mut pressed = [0.0; MAX_JOINTS];
-            let (point, force) = (self.world.tool_centre(), reference.normal * contact);
-            point_force_torques(chain, &links[..n], point, force, &mut pressed[..n]);
+            (self.world).add_force(reference.normal * contact, &mut pressed[..n]);
             for (torque, pressed) in torque.iter_mut().zip(pressed).take(n) {
                 *torque -= pressed;
             }

@@ -10,13 +10,22 @@
 //! v, v' speeds at its start and end. theta = 1/(1 - exp(-z)) - 1/z, z = h times the law's own rate, is exact for a decay at that rate: 1/2, the implicit
 //! midpoint rule of second order, where the step resolves the law, 1 where it does not (exponential fitting: Liniger, Willoughby, SIAM J. Numer. Anal. 7,
 //! 1970). Rapier's per-joint spring and damper take the part in v' implicitly, and q' is put right after its step, which takes theta as 1.
+//!
+//! Where it may, Rapier is asked in one of several steps alone: in between, the arm moves by what Rapier had last (`held_arm`), with the same laws. It is asked in each
+//! step while the tool may stick to the part, where a drive is at its limit, and for as long as what was lacking at its last step says so.
+
+mod hold;
 
 use glam::DVec3;
 use glamx::DPose3;
 use rapier3d::prelude::*;
 
 use super::contact::{ContactReading, PartContact, ToolBall};
-use crate::arm::chain::{JointKind, KinematicChain};
+use super::held_arm::{HeldArm, Joints};
+use super::lever::Lever;
+use super::rates::Rates;
+use crate::arm::chain::{JointKind, KinematicChain, MAX_JOINTS};
+use crate::arm::kinematics::link_poses;
 use crate::cell::Cell;
 use crate::control::law::{DriveLimit, JointLaw};
 use crate::device::PistonMotion;
@@ -42,6 +51,8 @@ pub struct WorldDescription<'a> {
     pub part: &'a TriangleMesh,
     /// Coulomb friction coefficient of the tool on it [1].
     pub friction: f64,
+    /// Most steps for one of Rapier's.
+    pub most_held: usize,
 }
 
 impl<'a> WorldDescription<'a> {
@@ -63,6 +74,7 @@ impl<'a> WorldDescription<'a> {
                 Some(_) => 0.0,
                 None => actual.cell.friction,
             },
+            most_held: scenario.simulation.arm_steps,
         }
     }
 }
@@ -91,12 +103,24 @@ pub struct World {
     moments: Vec<f64>,
     /// Force [N or N m] and speed of each joint at the moment of the last step in which its law acts.
     applied: Vec<(f64, f64)>,
-    displacements: Vec<f64>,
-    /// Motion of the ball's centre that the bodies have not followed yet [m].
-    shift: DVec3,
+    /// Positions at the start of the step [rad or m].
+    starts: Vec<f64>,
     positions: Vec<f64>,
     velocities: Vec<f64>,
+    /// Positions at which Rapier's bodies stand [rad or m], and the ball there.
+    seen: Vec<f64>,
+    seen_lever: Lever,
+    /// The ball where the joints are.
+    lever: Lever,
     reading: ContactReading,
+    /// Force on the tool [N] over the coming step that acts so far off the ball's centre [m].
+    pushed: (DVec3, DVec3),
+    friction: f64,
+    chain: KinematicChain,
+    world_from_base: DPose3,
+    /// The arm as Rapier had it last.
+    held: HeldArm,
+    rates: Rates,
 }
 
 /// The drive in a joint's law.
@@ -192,11 +216,19 @@ impl World {
             drives: vec![Drive::default(); count],
             moments: vec![0.5; count],
             applied: vec![(0.0, 0.0); count],
-            displacements: vec![0.0; count],
-            shift: DVec3::ZERO,
+            starts: vec![0.0; count],
             positions: vec![0.0; count],
             velocities: vec![0.0; count],
+            seen: vec![0.0; count],
+            seen_lever: Lever::new(DVec3::ZERO, DVec3::Z, []),
+            lever: Lever::new(DVec3::ZERO, DVec3::Z, []),
             reading: ContactReading::default(),
+            pushed: (DVec3::ZERO, DVec3::ZERO),
+            friction: description.friction,
+            chain: description.chain.clone(),
+            world_from_base: description.world_from_base,
+            held: HeldArm::default(),
+            rates: Rates::new(description.most_held),
         };
         world.clear_joint_defaults();
         world
@@ -234,46 +266,58 @@ impl World {
 
     /// Puts the joints at positions [rad or m] and at rest.
     pub fn set_positions(&mut self, positions: &[f64]) {
-        for (i, target) in positions.iter().enumerate() {
-            self.displacements[i] = target - self.positions[i];
-        }
+        self.positions.copy_from_slice(positions);
+        self.velocities.fill(0.0);
+        self.tell_bodies();
         let physics = &mut self.physics;
         let (multibody, _) = physics
             .multibody_joints
             .get_mut(self.joints[0])
             .expect("the multibody lives as long as the world");
-        multibody.apply_displacements(&self.displacements);
         multibody.forward_kinematics(&physics.bodies, false);
         multibody.update_rigid_bodies(&mut physics.bodies, true);
-        multibody.generalized_velocity_mut().fill(0.0);
-        self.shift = DVec3::ZERO;
         self.read_joints();
+        self.positions.copy_from_slice(&self.seen);
+        self.lever = self.seen_lever;
+        self.held.forget();
         let masses = self.mass_matrix();
         self.inertias = (0..self.joints.len()).map(|i| masses[(i, i)]).collect();
     }
 
-    /// Moves the joints by their displacements, their speeds as they are. The bodies follow at the start of the next step; until then the tool is where the
-    /// Jacobian takes it, to the square of what a law gains in a step.
-    fn displace(&mut self) {
-        let displacements = std::mem::take(&mut self.displacements);
-        self.shift = self.moved(&displacements);
-        self.multibody_mut().apply_displacements(&displacements);
-        self.displacements = displacements;
+    /// Takes Rapier's joints to where and as fast as the joints are; its bodies follow at the start of its next step.
+    fn tell_bodies(&mut self) {
+        let mut motions = [0.0; MAX_JOINTS];
+        for (motion, (to, from)) in motions
+            .iter_mut()
+            .zip(self.positions.iter().zip(&self.seen))
+        {
+            *motion = to - from;
+        }
+        let multibody = self
+            .physics
+            .multibody_joints
+            .get_mut_internal(self.joints[0])
+            .expect("the multibody lives as long as the world")
+            .0;
+        multibody.apply_displacements(&motions[..self.positions.len()]);
+        multibody
+            .generalized_velocity_mut()
+            .copy_from_slice(&self.velocities);
     }
 
-    /// Motion of the ball's centre with motions of the joints.
-    fn moved(&self, motions: &[f64]) -> DVec3 {
+    /// The ball where Rapier's bodies stand.
+    fn seen_ball(&self) -> Lever {
         let body = &self.physics.bodies[self.tool_body];
         let centre = body.position().transform_point(self.tool.centre_in_link);
         let arm = centre - body.mass_properties().world_com;
         let link = self.links[self.joints.len() - 1];
         let columns = self.multibody().body_jacobian(link).column_iter();
-        let moved = columns.zip(motions).map(|(column, motion)| {
+        let columns = columns.map(|column| {
             let linear = DVec3::new(column[0], column[1], column[2]);
             let angular = DVec3::new(column[3], column[4], column[5]);
-            (linear + angular.cross(arm)) * *motion
+            (linear + angular.cross(arm), angular)
         });
-        moved.fold(DVec3::ZERO, |sum, part| sum + part)
+        Lever::new(centre, body.rotation() * self.slide_axis, columns)
     }
 
     /// Sets the length of the steps to come [s].
@@ -293,73 +337,128 @@ impl World {
     /// Sets the law of each degree of freedom for the next step.
     pub fn set_laws(&mut self, laws: &[JointLaw]) {
         self.laws.copy_from_slice(laws);
-        let h = self.step;
         for (i, law) in laws.iter().enumerate() {
-            let (inertia, q, v) = (self.inertias[i], self.positions[i], self.velocities[i]);
+            let inertia = self.inertias[i];
             let rate = (law.damping / inertia).max((law.stiffness / inertia).sqrt());
-            let theta = moment(h * rate);
-            self.moments[i] = theta;
-            let early = (1.0 - theta) * v;
-            let force = law.at(q + theta * h * early, early);
-            let (stiffness, rest) = if law.stiffness > 0.0 {
-                let stiffness = theta * theta * law.stiffness;
-                (stiffness, q + force / stiffness)
-            } else {
-                (CONSTANT_LOAD_STIFFNESS, q + force / CONSTANT_LOAD_STIFFNESS)
+            self.moments[i] = moment(self.step * rate);
+        }
+    }
+
+    /// Force of a joint's law as far as the step's end has no part in it [N m or N].
+    fn early(&self, i: usize) -> f64 {
+        let (theta, h) = (self.moments[i], self.step);
+        let early = (1.0 - theta) * self.velocities[i];
+        self.laws[i].at(self.positions[i] + theta * h * early, early)
+    }
+
+    /// Has Rapier's joints act by their laws, and by further forces [N m or N].
+    fn tell_laws(&mut self, further: &Joints) {
+        for i in 0..self.joints.len() {
+            let (law, theta, q) = (self.laws[i], self.moments[i], self.positions[i]);
+            let force = self.early(i) + further[i];
+            let stiffness = match law.stiffness > 0.0 {
+                true => theta * theta * law.stiffness,
+                false => CONSTANT_LOAD_STIFFNESS,
             };
             let (axis, link) = (self.axes[i], self.links[i]);
             let multibody = self.multibody_mut();
             multibody.damping_mut()[i] = theta * law.damping;
             if let Some(link) = multibody.link_mut(link) {
-                link.joint.set_spring(axis, stiffness, rest);
+                link.joint
+                    .set_spring(axis, stiffness, q + force / stiffness);
             }
         }
     }
 
     /// Where the tool touches the part, or is about to, whose surface is off its mesh by `relief`.
     pub fn touches(&mut self, relief: &Relief, touches: &mut Vec<Touch>) {
-        let centre = self.tool_centre();
-        let body = &self.physics.bodies[self.tool_body];
-        let axis = body.rotation() * self.slide_axis;
         // The bodies' own velocities are those of the step before.
-        let velocity = self.moved(&self.velocities[..self.joints.len() - 1]);
+        let arm = &self.velocities[..self.joints.len() - 1];
+        let velocity = self.lever.velocity(arm, DVec3::ZERO);
+        let (centre, axis) = (self.lever.centre, self.lever.axis);
         self.part_contact
             .find(relief, centre, velocity, axis, touches);
     }
 
     /// Has a force [N] act on the tool over the coming step, where it touches along a normal.
     pub fn push_tool(&mut self, force: DVec3, normal: DVec3) {
-        let point = self.tool_centre() - normal * self.tool.radius;
-        let body = &mut self.physics.bodies[self.tool_body];
-        body.reset_forces(true);
-        body.reset_torques(true);
-        body.add_force_at_point(force, point, true);
+        self.pushed = (force, -normal * self.tool.radius);
+    }
+
+    /// Adds to forces of the joints [N m or N] what a force on the ball [N] does.
+    pub fn add_force(&self, force: DVec3, out: &mut [f64]) {
+        self.lever.add_force(force, DVec3::ZERO, out);
     }
 
     /// Advances by one step, the tool pressed on the part with forces [N] along normals. The slide ends where its own law took it, `slide`, moved on by what
     /// the arm did meanwhile that this law did not know; as the law set for it says where there is none.
     pub fn step(&mut self, pressed: &[(DVec3, f64)], slide: Option<PistonMotion>) {
-        let centre = self.tool_centre();
+        self.starts.copy_from_slice(&self.positions);
+        for (applied, speed) in self.applied.iter_mut().zip(&self.velocities) {
+            applied.1 = *speed;
+        }
+        let mut outside = match self.rates.every_step() {
+            true => None,
+            false => self.sliding(pressed),
+        };
+        if !self.hold(&mut outside) {
+            match outside {
+                Some(outside) => self.ask_sliding(&outside),
+                None => self.ask(pressed),
+            }
+            self.limit_drives();
+        }
+        self.pushed = (DVec3::ZERO, DVec3::ZERO);
+        self.end(slide);
+    }
+
+    /// Asks Rapier for the step, and for the friction of a tool that may stick.
+    fn ask(&mut self, pressed: &[(DVec3, f64)]) {
         self.part_contact.press(
             &self.physics,
             self.joints[0],
             self.tool_body,
-            centre,
+            self.lever.centre,
             pressed,
         );
-        for (i, (_, start)) in self.applied.iter_mut().enumerate() {
-            *start = self.velocities[i];
-            self.displacements[i] = self.positions[i];
+        self.push(&[self.pushed]);
+        self.advance(&[0.0; MAX_JOINTS]);
+        self.reading = self.part_contact.read(&self.physics);
+        self.rates.unsteady();
+        if !self.rates.every_step() {
+            self.learn_anew(pressed);
         }
+    }
+
+    /// Forces [N] on the tool over Rapier's next step, so far off the ball's centre [m].
+    fn push(&mut self, forces: &[(DVec3, DVec3)]) {
+        let motions = self.off_seen();
+        let body = &mut self.physics.bodies[self.tool_body];
+        let back = self.seen_lever.centre - body.mass_properties().world_com;
+        // Where the body will be by then.
+        let back = self.seen_lever.turned(back, &motions);
+        body.reset_forces(true);
+        body.reset_torques(true);
+        for (force, arm) in forces {
+            body.add_force(*force, true);
+            body.add_torque((back + *arm).cross(*force), true);
+        }
+    }
+
+    /// Has Rapier advance by the step, further forces [N m or N] on its joints.
+    fn advance(&mut self, further: &Joints) {
+        self.tell_bodies();
+        self.tell_laws(further);
         self.physics.step_with_events(&(), &());
         self.read_joints();
-        self.reading = self.part_contact.read(&self.physics);
-        self.limit_drives();
+    }
+
+    /// Ends a step whose speeds are known.
+    fn end(&mut self, slide: Option<PistonMotion>) {
         let h = self.step;
         let last = self.joints.len() - 1;
         for i in 0..=last {
             let (force, speed) = self.at_moment(i);
-            let q = self.displacements[i];
             self.applied[i] = match self.drives[i] {
                 Drive {
                     limit: Some(limit),
@@ -368,21 +467,29 @@ impl World {
                 } => (torque + limit.losses.at(0.0, speed), speed),
                 _ => (force, speed),
             };
-            let end = match slide {
+            self.positions[i] = match slide {
                 Some(slide) if i == last => {
                     slide.stroke + 0.5 * h * (self.velocities[i] - slide.speed)
                 }
-                _ => q + h * speed,
+                _ => self.starts[i] + h * speed,
             };
-            self.displacements[i] = end - self.positions[i];
         }
-        self.displace();
-        self.read_joints();
+        self.lever = self.seen_lever.after(&self.off_seen()[..=last]);
+    }
+
+    /// How far the joints are from where Rapier's bodies stand [rad or m].
+    fn off_seen(&self) -> Joints {
+        let mut off = [0.0; MAX_JOINTS];
+        let pairs = self.positions.iter().zip(&self.seen);
+        for (off, (to, from)) in off.iter_mut().zip(pairs) {
+            *off = to - from;
+        }
+        off
     }
 
     /// Force of a joint's law [N or N m] and its speed at the moment of the step in which it acts, as the step has left it.
     fn at_moment(&self, i: usize) -> (f64, f64) {
-        let (q, v, theta) = (self.displacements[i], self.applied[i].1, self.moments[i]);
+        let (q, v, theta) = (self.starts[i], self.applied[i].1, self.moments[i]);
         let speed = (1.0 - theta) * v + theta * self.velocities[i];
         (self.laws[i].at(q + theta * self.step * speed, speed), speed)
     }
@@ -462,11 +569,6 @@ impl World {
                 }
             }
         }
-        let velocities = std::mem::take(&mut self.velocities);
-        self.multibody_mut()
-            .generalized_velocity_mut()
-            .copy_from_slice(&velocities);
-        self.velocities = velocities;
     }
 
     fn read_joints(&mut self) {
@@ -479,9 +581,10 @@ impl World {
             let link = multibody
                 .link(self.links[i])
                 .expect("each joint has its link");
-            self.positions[i] = link.joint().coords()[self.axes[i]];
+            self.seen[i] = link.joint().coords()[self.axes[i]];
             self.velocities[i] = multibody.generalized_velocity()[i];
         }
+        self.seen_lever = self.seen_ball();
     }
 
     /// Joint positions [rad or m].
@@ -511,19 +614,17 @@ impl World {
 
     /// Centre of the tool's ball in the world [m].
     pub fn tool_centre(&self) -> DVec3 {
-        self.physics.bodies[self.tool_body]
-            .position()
-            .transform_point(self.tool.centre_in_link)
-            + self.shift
+        self.lever.centre
     }
 
-    /// Poses of the links behind the joints in the world, base first; writes as many as `out` holds.
+    /// Poses of the links behind the joints in the world, base first.
     pub fn link_poses(&self, out: &mut [DPose3]) {
-        let multibody = self.multibody();
-        for (pose, &link) in out.iter_mut().zip(&self.links) {
-            let link = multibody.link(link).expect("each joint has its link");
-            *pose = *link.local_to_world();
-        }
+        link_poses(&self.chain, self.world_from_base, &self.positions, out);
+    }
+
+    /// Steps so far, and Rapier's among them.
+    pub fn asked(&self) -> (usize, usize) {
+        self.rates.counts()
     }
 
     /// Torques that hold Rapier's bodies still against gravity at the current positions [N m or N]: minus the sum of J^T m g.

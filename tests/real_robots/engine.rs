@@ -35,6 +35,7 @@ fn differences(robot: &Robot) -> (f64, f64) {
         },
         part: &part,
         friction: 0.0,
+        most_held: 1,
     });
     let (mut mass_off, mut gravity_off) = (0.0f64, 0.0f64);
     for case in &robot.cases {

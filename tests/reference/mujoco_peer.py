@@ -2,7 +2,8 @@
 
 Reads one line of JSON (the scene, written by benches/step/peer.rs; SI units, all in the arm's base frame) and
 answers with one: the static contact force and penetration. Then answers each line `round` with the time that
-following the edge took. Steps run in mujoco.rollout's loop in C; nothing of Python is inside the time.
+following the edge took, and a line of JSON (steps, the finest step, times apart) with error and cost of each of its
+integrators at each step. Steps run in mujoco.rollout's loop in C; nothing of Python is inside the time.
 
 The same URDF; the slide, the moving mass and the ball are added to it. The axes have position servos of the same
 gains, MuJoCo's own gravity compensation, and the rest of the feed-forward as given torques. The device is a given
@@ -20,6 +21,7 @@ from mujoco import rollout
 # Impedance of the contact: with a given stiffness it only says how MuJoCo splits it into its two parameters.
 IMPEDANCE = 0.95
 SETTLING_STEPS = 3000
+SETTLING_TIME = 3.0
 
 
 def model_of(scene: dict, solref: list[float]) -> mujoco.MjModel:
@@ -53,6 +55,7 @@ def model_of(scene: dict, solref: list[float]) -> mujoco.MjModel:
     pair = dict(geomname1="ball", geomname2="part", condim=3, friction=friction)
     spec.add_pair(solref=solref, solimp=solimp, **pair)
     spec.add_sensor(type=mujoco.mjtSensor.mjSENS_TOUCH, objtype=mujoco.mjtObj.mjOBJ_SITE, objname="nose")
+    spec.add_sensor(type=mujoco.mjtSensor.mjSENS_FRAMEPOS, objtype=mujoco.mjtObj.mjOBJ_SITE, objname="nose")
 
     servo = scene["servo"]
     for axis, stiffness, damping in zip(axes, servo["stiffness"], servo["damping"], strict=True):
@@ -84,6 +87,59 @@ def controls(model: mujoco.MjModel, rows: dict) -> np.ndarray:
     applied = np.atleast_2d(rows["applied"])
     assert servo.shape[1] == model.nu and applied.shape[1] == model.nv, (servo.shape, applied.shape)
     return np.hstack([servo, applied])[None]
+
+
+def over_steps(rows: np.ndarray, apart: float, step: float) -> np.ndarray:
+    """Rows that are so far apart, linear in between, in the middle of each step."""
+    count = int(round((len(rows) - 1) * apart / step))
+    middles = (np.arange(count) + 0.5) * step / apart
+    before = np.minimum(middles.astype(int), len(rows) - 2)
+    share = (middles - before)[:, None]
+    return rows[before] * (1.0 - share) + rows[before + 1] * share
+
+
+def precision(model: mujoco.MjModel, scene: dict, wanted: dict) -> list[dict]:
+    """Error over cost of each integrator: 90th percentiles against its own run at the finest step."""
+    spec = int(mujoco.mjtState.mjSTATE_CTRL | mujoco.mjtState.mjSTATE_QFRC_APPLIED)
+    whole = mujoco.mjtState.mjSTATE_FULLPHYSICS
+    hold, rows = controls(model, scene["start"]["hold"]), controls(model, scene["follow"])[0]
+
+    def run(step: float) -> tuple[np.ndarray, np.ndarray, float]:
+        model.opt.timestep = step
+        data = mujoco.MjData(model)
+        data.qpos[:] = scene["start"]["position"]
+        start = np.zeros(mujoco.mj_stateSize(model, whole))
+        mujoco.mj_getState(model, data, start, whole)
+
+        def go(state: np.ndarray, control: np.ndarray, steps: int) -> tuple[np.ndarray, np.ndarray]:
+            return rollout.rollout(model, data, state, control, control_spec=spec, nstep=steps)
+
+        states, _ = go(start[None], hold, int(round(SETTLING_TIME / step)))
+        settled = states[0, -1][None].copy()
+        control = over_steps(rows, scene["step"], step)[None]
+        costs = []
+        for _ in range(5):
+            started = time.perf_counter()
+            states, sensors = go(settled, control, control.shape[1])
+            costs.append((time.perf_counter() - started) / (control.shape[1] * step))
+        every = int(round(wanted["apart"] / step))
+        # What is computed with a state is there before its step: positions of a sensor are those of the step's start.
+        angles = states[0, every - 1 :: every, 1 : model.nq]
+        tips = sensors[0, every::every, 1:4]
+        return angles, tips, float(np.median(costs))
+
+    found = []
+    for name in ("EULER", "IMPLICITFAST", "RK4"):
+        model.opt.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{name}")
+        angles, tips, _ = run(wanted["finest"])
+        for step in wanted["steps"]:
+            there, at, cost = run(step)
+            count, tip_count = min(len(there), len(angles)), min(len(at), len(tips))
+            joints = np.abs(there[:count] - angles[:count])
+            off = np.linalg.norm(at[:tip_count] - tips[:tip_count], axis=1)
+            error = dict(joints=float(np.quantile(joints, 0.9)), tip=float(np.quantile(off, 0.9)))
+            found.append(dict(integrator=name.lower(), step=step, cost=cost, **error))
+    return found
 
 
 def main() -> None:
@@ -118,6 +174,9 @@ def main() -> None:
     follow = controls(model, scene["follow"])
     steps = follow.shape[1]
     for line in sys.stdin:
+        if line.startswith("{"):
+            print(json.dumps(precision(model, scene, json.loads(line))), flush=True)
+            continue
         if line.strip() != "round":
             break
         started = time.perf_counter()
