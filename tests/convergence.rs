@@ -7,6 +7,7 @@ use idc_cell::recording::{Recording, schema};
 use idc_cell::rig::Rig;
 use idc_cell::scenario::bench::{CommandScenario, HandScenario};
 use idc_cell::scenario::{BenchScenario, load_bench};
+use idc_cell::simulation::Simulation;
 
 use crate::common::{project, run, scenario};
 
@@ -55,30 +56,31 @@ const SIGNALS: [Signal; 8] = [
     (schema::CHAMBER_1_PRESSURE, 6e5),
 ];
 /// Steps, each half of the one before, and the one against which their errors are [s].
-const HALVED: [f64; 5] = [2e-3, 1e-3, 5e-4, 2.5e-4, 1.25e-4];
+const HALVED: [f64; 5] = [1e-3, 5e-4, 2.5e-4, 1.25e-4, 6.25e-5];
 const FINEST: f64 = 2.5e-5;
+/// From the start of following: when the tool slides steadily, and how long that is looked at [s].
+const STEADY: [f64; 2] = [1.0, 3.0];
 
-/// A signal while the edge is followed, by the coarsest step.
+/// Signals while the edge is followed, at the coarsest step's times.
 fn followed(step: f64) -> Vec<Vec<f64>> {
     let mut scenario = scenario("plate_edge_ideal");
     scenario.simulation.step = step;
     let cell = Cell::new(scenario).unwrap();
-    let (_, start, end) = cell
-        .plan
-        .phases()
-        .into_iter()
+    let phases = cell.plan.phases();
+    let follow = phases
+        .iter()
         .find(|(phase, ..)| *phase == Phase::Follow)
         .unwrap();
-    let recording = cell.run(&mut |_| ()).unwrap().recording;
-    let rows: Vec<usize> = (1..)
-        .map(|i| f64::from(i) * HALVED[0])
-        .skip_while(|time| *time < start + 0.2)
-        .take_while(|time| *time < end - 0.2)
-        .map(|time| (time / step).round() as usize - 1)
-        .collect();
+    let [from, to] = STEADY.map(|time| ((follow.1 + time) / HALVED[0]).round() as usize);
+    let mut simulation = Simulation::new(&cell);
+    while (simulation.steps() as f64) * step < to as f64 * HALVED[0] {
+        simulation.step().unwrap();
+    }
+    let recording = simulation.into_logs().0.into_recording().unwrap();
+    let row = |i: usize| (i as f64 * HALVED[0] / step).round() as usize - 1;
     let values = |(name, _): &Signal| {
         let values = recording.values(name).unwrap();
-        rows.iter().map(|row| values[*row]).collect()
+        (from..to).map(|i| values[row(i)]).collect()
     };
     SIGNALS.iter().map(values).collect()
 }

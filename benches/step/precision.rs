@@ -27,7 +27,7 @@ const PEER_STEPS: [f64; 5] = [0.25e-3, 0.5e-3, 1e-3, 2e-3, 4e-3];
 /// Step of the runs that errors are taken against [s].
 const FINEST: f64 = 5e-5;
 /// Time from the start of following over which errors are taken [s].
-const SPAN: f64 = 4.0;
+const SPAN: f64 = 12.0;
 /// Times at which runs are compared are so far apart [s].
 const APART: f64 = 8e-3;
 /// The same of the record that MuJoCo is given [s].
@@ -43,6 +43,8 @@ struct Point {
     cost: f64,
     /// Error of the joints [rad] and of the ball's centre [m].
     error: [f64; 2],
+    /// Steps for one in which the mass matrix was taken anew.
+    held: f64,
 }
 
 /// The cell of a scenario at a step [s].
@@ -53,10 +55,10 @@ fn cell_at(name: &str, step: f64) -> Result<Cell, Box<dyn Error>> {
 }
 
 /// The whole job, which must be done to its end.
-fn run(cell: &Cell) -> Result<Recording, Box<dyn Error>> {
+fn run(cell: &Cell) -> Result<(Recording, f64), Box<dyn Error>> {
     let run = cell.run(&mut |_| ())?;
     match run.stop {
-        None => Ok(run.recording),
+        None => Ok((run.recording, run.steps_per_mass_matrix)),
         Some(stop) => Err(stop.to_string().into()),
     }
 }
@@ -112,12 +114,13 @@ fn errors(one: &(Vec<Vec<f64>>, Vec<DVec3>), other: &(Vec<Vec<f64>>, Vec<DVec3>)
 /// Draws error over cost of a scenario's cell and of MuJoCo.
 pub fn compare(name: &str) -> Result<(), Box<dyn Error>> {
     let finest = cell_at(name, FINEST)?;
-    let recording = run(&finest)?;
+    let (recording, _) = run(&finest)?;
     let truth = course(&finest, &recording);
     let mut ours = Vec::new();
     for step in STEPS {
         let cell = cell_at(name, step)?;
-        let course = course(&cell, &run(&cell)?);
+        let (recording, held) = run(&cell)?;
+        let course = course(&cell, &recording);
         let mut following = Following::new(&cell);
         let steps = (TIMED.0 / step) as usize;
         let mut costs: Vec<f64> = (0..TIMED.1)
@@ -128,6 +131,7 @@ pub fn compare(name: &str) -> Result<(), Box<dyn Error>> {
             step,
             cost: median(&mut costs),
             error: errors(&course, &truth),
+            held,
         });
     }
     let forces = recording
@@ -152,6 +156,7 @@ pub fn compare(name: &str) -> Result<(), Box<dyn Error>> {
                     step: point.step,
                     cost: point.cost,
                     error: [point.joints, point.tip],
+                    held: 1.0,
                 })
                 .collect();
             draw(&theirs);
@@ -165,15 +170,15 @@ pub fn compare(name: &str) -> Result<(), Box<dyn Error>> {
 
 fn draw(points: &[Point]) {
     println!(
-        "{:<22} {:>8} {:>14} {:>14} {:>12}",
-        "", "step ms", "us/s simulated", "joints rad", "tip m"
+        "{:<28} {:>8} {:>14} {:>14} {:>12} {:>8}",
+        "", "step ms", "us/s simulated", "joints rad", "tip m", "steps/M"
     );
     for point in points {
         let (step, cost) = (point.step * 1e3, point.cost * 1e6);
         let [joints, tip] = point.error;
         println!(
-            "{:<22} {step:>8.2} {cost:>14.0} {joints:>14.3e} {tip:>12.3e}",
-            point.name
+            "{:<28} {step:>8.2} {cost:>14.0} {joints:>14.3e} {tip:>12.3e} {:>8.1}",
+            point.name, point.held
         );
     }
 }

@@ -21,6 +21,8 @@ pub struct FinishedCell {
     pub stop: Option<SimulationError>,
     /// The edge as a turning tool left it.
     pub edge: Option<EdgeProfile>,
+    /// Steps for one in which the arm's mass matrix was taken anew, on average [1].
+    pub steps_per_mass_matrix: f64,
 }
 
 /// Simulates and measures the whole job; `observer` is given the simulation after every step.
@@ -37,6 +39,7 @@ pub fn run_cell(
         contact_points,
         stop,
         edge,
+        steps_per_mass_matrix,
     } = cell.run(observer)?;
     let recording = with_arm_sensors(cell, recording, &contact_points)?;
     let mut summary = summarise(&recording, &limits(cell))
@@ -50,6 +53,7 @@ pub fn run_cell(
         summary,
         stop,
         edge,
+        steps_per_mass_matrix,
     })
 }
 

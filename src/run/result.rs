@@ -43,6 +43,9 @@ pub struct RunResult {
     /// Samples of its recording.
     #[serde(default)]
     pub samples: usize,
+    /// Steps for one in which the arm's mass matrix was taken anew, on average; none of a bench.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub steps_per_mass_matrix: Option<f64>,
     /// Notes on what was simulated.
     #[serde(default)]
     pub notes: Vec<String>,
@@ -132,6 +135,7 @@ impl RunResult {
             expectations,
             joint_names: joints.map(|joint| joint.name.clone()).collect(),
             samples: finished.recording.sample_count(),
+            steps_per_mass_matrix: Some(finished.steps_per_mass_matrix),
             notes: setup.notes.clone(),
             estimated_masses: cell.estimated.clone(),
             assumed: setup.scenario.assumed_values().cloned().collect(),
@@ -159,6 +163,7 @@ impl RunResult {
             expectations,
             joint_names: Vec::new(),
             samples: finished.recording.sample_count(),
+            steps_per_mass_matrix: None,
             notes: Vec::new(),
             estimated_masses: None,
             assumed: rig.scenario.device.assumed.clone(),

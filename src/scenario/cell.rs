@@ -290,7 +290,7 @@ keys! {
         /// rigid-body step
         step: f64 = "step_ms" in 0.01..=10.0, or 1.0;
         /// most steps in which the arm's mass matrix is taken once
-        arm_steps: usize = "arm_steps" in 1..=64, or 8;
+        arm_steps: usize = "arm_steps" in 1..=64, or 16;
         /// pneumatic sub-steps in each of them
         substeps: usize = "device_substeps" in 1..=1000, or 2;
         /// gravity in the world

@@ -152,3 +152,99 @@ impl HeldArm {
         lacking
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STEP: f64 = 1e-3;
+    /// Steps for one of the engine's.
+    const HELD: usize = 8;
+
+    fn joints(values: [f64; 2]) -> Joints {
+        let mut joints = [0.0; MAX_JOINTS];
+        joints[..2].copy_from_slice(&values);
+        joints
+    }
+
+    fn mass() -> DMatrix<f64> {
+        DMatrix::from_row_slice(2, 2, &[2.0, 0.5, 0.5, 1.0])
+    }
+
+    /// Accelerations under forces.
+    fn accelerations(force: [f64; 2]) -> Joints {
+        let solved = mass().lu().solve(&nalgebra::Vector2::from(force)).unwrap();
+        joints([solved[0], solved[1]])
+    }
+
+    /// A bias that changes evenly [N m].
+    fn bias(time: f64) -> [f64; 2] {
+        [3.0 - 20.0 * time, 1.0 + 7.0 * time]
+    }
+
+    const FORCE: [f64; 2] = [0.4, -0.3];
+
+    /// An arm that an engine has told of such a bias several times, as the pose was at the start of its steps; what was lacking at the last.
+    fn told() -> (HeldArm, Joints, f64) {
+        let (mut arm, mut time) = (HeldArm::default(), 0.0);
+        let mut lacking = [0.0; MAX_JOINTS];
+        for _ in 0..20 {
+            let (ahead, now) = (arm.ahead(STEP), bias(time));
+            let force = [0, 1].map(|i| FORCE[i] + now[i] + ahead[i]);
+            lacking = arm.learn(&Engine {
+                mass: &mass(),
+                accelerations: &accelerations(force),
+                force: &joints(FORCE),
+                ahead: &ahead,
+                step: STEP,
+            });
+            for _ in 1..HELD {
+                arm.pass(STEP);
+            }
+            time += HELD as f64 * STEP;
+        }
+        (arm, lacking, time)
+    }
+
+    // Catches: a bias that stays as it was; the start of a step for its middle.
+    #[test]
+    fn a_bias_that_changes_evenly_is_followed_to_the_middle_of_each_step() {
+        let (mut arm, lacking, time) = told();
+        assert!(lacking[0].abs() < 1e-12, "{lacking:?}");
+        let acting = Acting {
+            step: STEP,
+            force: joints(FORCE),
+            added: [0.0; MAX_JOINTS],
+        };
+        let gained = arm.forecast(&acting).unwrap();
+        let middle = bias(time + 0.5 * STEP);
+        let expected = accelerations([FORCE[0] + middle[0], FORCE[1] + middle[1]]);
+        for (gained, expected) in gained.iter().zip(expected) {
+            assert!((gained - STEP * expected).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn what_laws_add_to_the_mass_matrix_is_added() {
+        let (mut arm, ..) = told();
+        let acting = |added| Acting {
+            step: STEP,
+            force: joints([2.0, -1.0]),
+            added: joints(added),
+        };
+        let free = arm.forecast(&acting([0.0, 0.0])).unwrap();
+        let held = arm.forecast(&acting([1e12, 0.0])).unwrap();
+        assert!(held[0].abs() < 1e-12 * free[0].abs() && held[1].abs() > 0.0);
+        assert_eq!(arm.forecast(&acting([0.0, 0.0])).unwrap(), free);
+        assert!(arm.forecast(&acting([-1e3, 0.0])).is_none());
+    }
+
+    #[test]
+    fn nothing_is_said_before_the_engine_has() {
+        let mut arm = HeldArm::default();
+        assert!(arm.forecast(&Acting::default()).is_none());
+        let (mut arm, ..) = told();
+        arm.forget();
+        assert!(arm.forecast(&Acting::default()).is_none());
+    }
+}

@@ -5,7 +5,7 @@
 use super::held_arm::Joints;
 
 /// Error of a joint that is accepted of what is lacking at the engine's step [rad].
-const ACCEPTED: f64 = 1e-8;
+const ACCEPTED: f64 = 1e-9;
 /// Share of that below which the engine is asked half as often [1].
 const EASY: f64 = 0.125;
 /// Motion of a joint from where the engine's bodies stand up to which the ball's place is known without them [rad or m].
@@ -76,5 +76,50 @@ impl Rates {
     /// Steps so far, and the engine's among them.
     pub fn counts(&self) -> (usize, usize) {
         (self.steps, self.asked)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::arm::chain::MAX_JOINTS;
+
+    const THERE: Joints = [0.0; MAX_JOINTS];
+
+    /// Steps that may do without the engine before it is asked again.
+    fn held(rates: &mut Rates) -> usize {
+        let mut count = 0;
+        while rates.may_hold(&THERE) {
+            rates.held();
+            count += 1;
+        }
+        count
+    }
+
+    #[test]
+    fn the_engine_is_asked_seldom_where_little_is_lacking_and_often_where_much_is() {
+        let mut rates = Rates::new(8);
+        assert_eq!(held(&mut rates), 0);
+        for expected in [1, 3, 7, 7] {
+            rates.learnt(0.0);
+            assert_eq!(held(&mut rates), expected);
+        }
+        rates.learnt(2.0 * ACCEPTED);
+        assert_eq!(held(&mut rates), 3);
+        rates.learnt(0.5 * ACCEPTED);
+        assert_eq!(held(&mut rates), 3);
+        rates.unsteady();
+        assert_eq!(held(&mut rates), 0);
+        assert_eq!(rates.counts(), (31, 7));
+    }
+
+    #[test]
+    fn the_engine_is_asked_before_the_arm_is_far_from_where_its_bodies_stand() {
+        let mut rates = Rates::new(8);
+        rates.learnt(0.0);
+        let mut far = THERE;
+        far[2] = -1.1 * NEAR;
+        assert!(rates.may_hold(&THERE) && !rates.may_hold(&far));
+        assert!(Rates::new(1).every_step());
     }
 }

@@ -18,6 +18,8 @@ pub struct CellRun {
     pub contact_points: Vec<DVec3>,
     /// The edge as a turning tool left it.
     pub edge: Option<EdgeProfile>,
+    /// Steps for one in which the arm's mass matrix was taken anew, on average [1].
+    pub steps_per_mass_matrix: f64,
     /// Reason why it ended early, if it did.
     pub stop: Option<SimulationError>,
 }
@@ -37,10 +39,12 @@ impl Cell {
             stop = simulation.step().err();
             observer(&simulation);
         }
+        let steps_per_mass_matrix = simulation.steps_per_mass_matrix();
         let contact_points = simulation.take_contact_points();
         let (samples, frames, edge) = simulation.into_logs();
         Ok(CellRun {
             contact_points,
+            steps_per_mass_matrix,
             edge: edge.as_ref().map(profile),
             recording: samples.into_recording()?,
             frames,

@@ -212,6 +212,12 @@ impl<'a> Simulation<'a> {
         (&self.log, &self.frames)
     }
 
+    /// Steps of the arm for one in which its mass matrix was taken anew, on average so far [1].
+    pub fn steps_per_mass_matrix(&self) -> f64 {
+        let (steps, asked) = self.world.asked();
+        steps as f64 / asked.max(1) as f64
+    }
+
     /// Where the tool touches, by sample [m]; none where the cell names no arm file.
     pub fn take_contact_points(&mut self) -> Vec<DVec3> {
         self.contact_points.take().unwrap_or_default()

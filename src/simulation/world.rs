@@ -397,11 +397,7 @@ impl World {
         for (applied, speed) in self.applied.iter_mut().zip(&self.velocities) {
             applied.1 = *speed;
         }
-        let mut outside = match self.rates.every_step() {
-            true => None,
-            false => self.sliding(pressed),
-        };
-        if !self.hold(&mut outside) {
+        if let Err(outside) = self.hold(pressed) {
             match outside {
                 Some(outside) => self.ask_sliding(&outside),
                 None => self.ask(pressed),

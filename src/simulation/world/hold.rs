@@ -4,8 +4,8 @@
 //! F = N n - mu N u / |u|
 //! ```
 //!
-//! N normal force [N], n normal out of the part, mu coefficient of friction [1], u velocity of the tool along the part where they touch [m/s]. That holds where u neither
-//! ends nor turns within the step; where it may, the tool may stick, and Rapier's own contact finds its friction.
+//! N normal force [N], n normal out of the part, mu coefficient of friction [1], u velocity of the tool along the part where they touch, in the middle of the step [m/s].
+//! That holds where u neither ends nor turns within the step; where it may, the tool may stick, and Rapier's own contact finds its friction.
 
 use glam::DVec3;
 
@@ -16,6 +16,8 @@ use crate::simulation::held_arm::{Acting, Engine, Joints};
 
 /// Share of its speed that a tool which slides keeps at least along its direction over a step [1].
 const SLIDES_ON: f64 = 0.5;
+/// Turn of that direction over a step from which on friction is taken anew by that in the middle [rad].
+const TURNS: f64 = 1e-5;
 
 /// What acts on the tool from outside over a step.
 pub(super) struct Outside {
@@ -29,8 +31,8 @@ pub(super) struct Outside {
 }
 
 impl World {
-    /// What acts on a tool that is pressed with forces [N] along normals if it slides; none where it does not move.
-    pub(super) fn sliding(&self, pressed: &[(DVec3, f64)]) -> Option<Outside> {
+    /// What acts on a tool that is pressed with forces [N] along normals if it slides as the joints' speeds are; none where it does not move.
+    pub(super) fn sliding(&self, pressed: &[(DVec3, f64)], speeds: &[f64]) -> Option<Outside> {
         let mut outside = Outside {
             forces: Vec::new(),
             slips: Vec::new(),
@@ -43,7 +45,7 @@ impl World {
         for &(normal, force) in pressed.iter().filter(|(_, force)| *force > 0.0) {
             let mut friction = DVec3::ZERO;
             if self.friction > 0.0 {
-                let slip = self.slip(normal, &self.velocities);
+                let slip = self.slip(normal, speeds);
                 friction = -slip.try_normalize()? * (self.friction * force);
                 outside.slips.push((normal, slip));
             }
@@ -73,35 +75,55 @@ impl World {
         })
     }
 
-    /// Moves the joints by a step of the arm as Rapier had it last. Where it may not, the joints are as they were: a drive comes to its limit, or it is Rapier's turn; where
-    /// the tool may stick, `outside` is none any more.
-    pub(super) fn hold(&mut self, outside: &mut Option<Outside>) -> bool {
-        let Some(sliding) = outside.as_ref() else {
-            return false;
-        };
-        let Some(gained) = self.forecast(sliding) else {
-            if !sliding.slips.is_empty() {
-                *outside = None;
-            }
-            return false;
-        };
-        for (speed, gained) in self.velocities.iter_mut().zip(gained) {
-            *speed += gained;
+    /// Whether the tool turns while it slides: friction is then not what it was at the start of the step.
+    fn slides_round(&self, outside: &Outside) -> bool {
+        outside.slips.iter().any(|(normal, slip)| {
+            let end = self.slip(*normal, &self.velocities);
+            slip.cross(end).length() > TURNS * slip.length_squared()
+        })
+    }
+
+    /// Moves the joints by a step of the arm as Rapier had it last, the tool pressed with forces [N] along normals. Where it may not, the joints are as they were, and what
+    /// acts on the tool is given if it slides: a drive comes to its limit, or it is Rapier's turn.
+    pub(super) fn hold(&mut self, pressed: &[(DVec3, f64)]) -> Result<(), Option<Outside>> {
+        if self.rates.every_step() {
+            return Err(None);
         }
-        let slides = self.slides_on(sliding);
+        let Some(mut outside) = self.sliding(pressed, &self.velocities) else {
+            return Err(None);
+        };
+        if !self.forecast(&outside) {
+            return Err(outside.slips.is_empty().then_some(outside));
+        }
+        let slides = self.slides_on(&outside);
+        if slides && self.slides_round(&outside) {
+            let mut middle = [0.0; MAX_JOINTS];
+            let middle = &mut middle[..self.joints.len()];
+            for (i, middle) in middle.iter_mut().enumerate() {
+                *middle = 0.5 * (self.velocities[i] + self.applied[i].1);
+            }
+            self.take_back();
+            let Some(turned) = self.sliding(pressed, middle) else {
+                return Err(None);
+            };
+            outside = turned;
+            self.forecast(&outside);
+        }
         if slides && self.rates.may_hold(&self.off_seen()) && self.within_limits() {
-            self.reading = sliding.reading;
+            self.reading = outside.reading;
             self.held.pass(self.step);
             self.rates.held();
-            return true;
+            return Ok(());
         }
+        self.take_back();
+        Err(slides.then_some(outside))
+    }
+
+    /// Gives the joints the speeds of the step's start.
+    fn take_back(&mut self) {
         for (speed, applied) in self.velocities.iter_mut().zip(&self.applied) {
             *speed = applied.1;
         }
-        if !slides {
-            *outside = None;
-        }
-        false
     }
 
     /// Whether no drive gives more than it can; notes what they give.
@@ -120,8 +142,8 @@ impl World {
         true
     }
 
-    /// Changes of the joints' speeds by the arm as Rapier had it last.
-    fn forecast(&mut self, outside: &Outside) -> Option<Joints> {
+    /// Gives the joints the speeds of the step's end by the arm as Rapier had it last; whether that is known.
+    fn forecast(&mut self, outside: &Outside) -> bool {
         let h = self.step;
         let mut acting = Acting {
             step: h,
@@ -133,7 +155,13 @@ impl World {
             acting.added[i] = h * yielding;
             acting.force[i] += self.early(i) - yielding * self.velocities[i];
         }
-        self.held.forecast(&acting)
+        let Some(gained) = self.held.forecast(&acting) else {
+            return false;
+        };
+        for (speed, gained) in self.velocities.iter_mut().zip(gained) {
+            *speed += gained;
+        }
+        true
     }
 
     /// How a joint's law yields to the speed at the end of the step [N s/m or N m s/rad].
