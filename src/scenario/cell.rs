@@ -289,10 +289,10 @@ keys! {
     pub struct SimulationScenario {
         /// rigid-body step
         step: f64 = "step_ms" in 0.01..=10.0, or 1.0;
-        /// most steps in which the arm's mass matrix is taken once
-        arm_steps: usize = "arm_steps" in 1..=64, or 16;
         /// pneumatic sub-steps in each of them
         substeps: usize = "device_substeps" in 1..=1000, or 2;
+        /// most steps in which the arm's mass matrix is taken once
+        arm_steps: usize = "arm_steps" in 1..=64, or 16;
         /// gravity in the world
         gravity: DVec3 = "gravity_m_per_s2" in -30..=30, or vec![0.0, 0.0, -9.81];
         /// seed of the search for a posture and of all noise

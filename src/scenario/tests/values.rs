@@ -281,7 +281,7 @@ fn every_kind_of_burr_is_read() {
 fn every_other_key_reaches_its_field() {
     let text = format!(
         "{MINIMAL}[contact]\nstiffness_n_per_m = 2e5\ndamping_n_s_per_m = 300\nfriction_coefficient = 0.3\n\
-         [simulation]\nstep_ms = 0.5\ndevice_substeps = 4\ngravity_m_per_s2 = [1, 2, -3]\nseed = 9\n\
+         [simulation]\nstep_ms = 0.5\ndevice_substeps = 4\narm_steps = 3\ngravity_m_per_s2 = [1, 2, -3]\nseed = 9\n\
          [expect]\nb_n = {{ max = 2 }}\na_n = {{ min = -1, max = 1 }}\n"
     );
     let scenario = read(&text).unwrap();
@@ -291,6 +291,7 @@ fn every_other_key_reaches_its_field() {
     let simulation = SimulationScenario {
         step: 5e-4,
         substeps: 4,
+        arm_steps: 3,
         gravity: DVec3::new(1.0, 2.0, -3.0),
         seed: 9,
     };
