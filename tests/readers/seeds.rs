@@ -22,7 +22,9 @@ const ROWS: usize = 8;
 const START: u64 = 1_714_740_000;
 
 fn is_toml(name: &str) -> bool {
-    std::path::Path::new(name).extension().is_some_and(|end| end == "toml")
+    std::path::Path::new(name)
+        .extension()
+        .is_some_and(|end| end == "toml")
 }
 
 /// Files of a door's kind.
