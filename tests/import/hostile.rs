@@ -256,7 +256,7 @@ fn a_text_of_more_rows_than_can_be_held_is_refused_with_the_key_that_takes_them(
     folder.write("log.csv", "F\n".to_owned() + &"1\n".repeat(20_000));
     let force = channel("force", "\"F\"", "N");
     let map = |largest: u64| {
-        let keys = "form = \"text\"\nnames_line = 1\nheader_lines = 1\nsample_rate_hz = 100\n";
+        let keys = "form = \"text\"\nnames_line = 1\nsample_rate_hz = 100\n";
         folder.map(
             "map.toml",
             &format!("{keys}largest_mb = {largest}\n{force}"),
