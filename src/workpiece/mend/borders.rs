@@ -76,13 +76,8 @@ impl Surface {
         (open, vertices)
     }
 
-    /// Makes one of vertices of the border that lie within a tolerance [m], and nearer to each other than to anything else.
-    pub(super) fn join_vertices(&mut self, tolerance: f64) {
-        let (_, border) = self.border();
-        if border.is_empty() {
-            return;
-        }
-        // Of each vertex of the border its shortest side, and the number of its triangles.
+    /// Of each vertex of the border its shortest side [m], and the number of its triangles.
+    fn shortest_sides(&self, border: &BTreeSet<u32>) -> BTreeMap<u32, (f64, usize)> {
         let mut shortest: BTreeMap<u32, (f64, usize)> =
             border.iter().map(|&v| (v, (f64::INFINITY, 0))).collect();
         for triangle in &self.triangles {
@@ -98,6 +93,16 @@ impl Surface {
                 }
             }
         }
+        shortest
+    }
+
+    /// Makes one of vertices of the border that lie within a tolerance [m], and nearer to each other than to anything else.
+    pub(super) fn join_vertices(&mut self, tolerance: f64) {
+        let (_, border) = self.border();
+        if border.is_empty() {
+            return;
+        }
+        let shortest = self.shortest_sides(&border);
         let grid = Grid::new(self, &border, 2.0 * tolerance);
         let mut pairs: Vec<(f64, u32, u32)> = Vec::new();
         for &vertex in &border {
