@@ -103,6 +103,8 @@ pub(super) fn wall_time(summary: &Summary) -> Option<String> {
 mod tests {
     use super::*;
 
+    type Note = fn(&Summary) -> Option<String>;
+
     #[test]
     fn each_note_says_the_number_that_it_is_about() {
         let summary = Summary {
@@ -125,7 +127,7 @@ mod tests {
             follow_duration_s: Some(14.5),
             ..Summary::default()
         };
-        let notes: [(fn(&Summary) -> Option<String>, &[&str]); 12] = [
+        let notes: [(Note, &[&str]); 12] = [
             (from_desired, &["desired 100", "3"]),
             (of_desired, &["3.250 % of the desired force"]),
             (above_desired, &["7.5", "% above desired"]),
