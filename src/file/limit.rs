@@ -102,7 +102,11 @@ mod tests {
         assert_eq!(usual.passed(20 * MEGABYTE), 4000 * MEGABYTE);
         let given = Limit::of(Some(3));
         assert_eq!(
-            [given.unpacked(MEGABYTE), given.passed(MEGABYTE), given.whole()],
+            [
+                given.unpacked(MEGABYTE),
+                given.passed(MEGABYTE),
+                given.whole()
+            ],
             [3 * MEGABYTE; 3]
         );
         assert_eq!(given.settings(), SETTINGS);
