@@ -111,7 +111,7 @@ pub fn smallest_singular_value(
     }
 }
 
-/// Whether [`smallest_singular_value`] is at least so large: by a factorisation, for a tenth of the work.
+/// Whether [`smallest_singular_value`] is at least so large: by a factorisation, without the values.
 ///
 /// ```text
 /// s_min >= s  <=>  J J^T - s^2 I is positive definite  (J^T J with fewer than six joints)
