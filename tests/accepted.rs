@@ -190,7 +190,7 @@ fn is_within_bounds(
 fn with_text(error: TestCaseError, text: &str) -> TestCaseError {
     match error {
         TestCaseError::Fail(reason) => TestCaseError::fail(format!("{reason}\nof\n{text}")),
-        other => other,
+        TestCaseError::Reject(reason) => TestCaseError::Reject(reason),
     }
 }
 
@@ -226,8 +226,8 @@ const BENCHES: [(&str, &str); 4] = [
 
 fn bench_text(kind: &str, rest: &str) -> String {
     format!(
-        "schema = 2\nkind = \"bench\"\ntitle = \"{kind}\"\n[device]\nmodel = {:?}\nideal = {}\n[bench]\nduration_s = 1.2\n{rest}",
-        project("models/device.toml"),
+        "schema = 2\nkind = \"bench\"\ntitle = \"{kind}\"\n[device]\nmodel = \"{}\"\nideal = {}\n[bench]\nduration_s = 1.2\n{rest}",
+        project("models/device.toml").display(),
         kind != "free"
     )
 }

@@ -266,6 +266,9 @@ impl Writing {
     }
 }
 
+/// Calls of a kind that are met.
+const OF_A_KIND: usize = 2;
+
 /// Calls that are met, each with its fault: all with each, or some of each kind, in turn.
 fn chosen(calls: &[Call]) -> Vec<(usize, (&'static str, &'static str))> {
     let numbers = 1..=calls.len();
@@ -274,8 +277,6 @@ fn chosen(calls: &[Call]) -> Vec<(usize, (&'static str, &'static str))> {
             .flat_map(|number| FAULTS.map(|fault| (number, fault)))
             .collect();
     }
-    /// Calls of a kind.
-    const OF_A_KIND: usize = 2;
     let mut of_kind: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (number, call) in numbers.zip(calls) {
         of_kind.entry(&call.name).or_default().push(number);

@@ -143,10 +143,7 @@ fn product() -> Vec<(String, PathBuf, String)> {
     let mut found = Vec::new();
     for (path, text) in sources(&src) {
         let inside = path.strip_prefix(&src).unwrap().to_owned();
-        let is_test = inside.iter().any(|part| {
-            let part = part.to_string_lossy();
-            part == "tests" || part == "tests.rs" || part.starts_with("test_")
-        });
+        let is_test = crate::source::is_of_tests(&inside);
         if let (Some(module), true, false) =
             (inside.iter().next(), inside.iter().count() > 1, is_test)
         {
@@ -333,7 +330,7 @@ fn files_are_opened_for_reading_by_one_module() {
     for (file, tokens) in crate::source::sources() {
         // A folder is locked by opening it; tests read what they wrote.
         if file.starts_with("file/")
-            || file.ends_with("/tests.rs")
+            || crate::source::is_of_tests(Path::new(&file))
             || ["recording/atomic.rs", "recording/claim.rs"].contains(&file.as_str())
         {
             continue;

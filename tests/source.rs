@@ -37,6 +37,14 @@ pub fn sources() -> Sources {
     found
 }
 
+/// Whether a file below `src` holds unit tests alone.
+pub fn is_of_tests(path: &Path) -> bool {
+    path.iter().any(|part| {
+        let part = part.to_string_lossy();
+        part == "tests" || part == "tests.rs" || part.starts_with("test_")
+    })
+}
+
 /// Words and signs of a text.
 pub fn tokens(text: &str) -> Vec<Token> {
     let is_word = |letter: &char| letter.is_alphanumeric() || *letter == '_';

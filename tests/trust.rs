@@ -368,17 +368,17 @@ fn a_damaged_diagnosis_is_done_again() {
     let at = right.find("\"verdict\"").unwrap();
     let damages: [(&str, &dyn Fn()); 4] = [
         ("cut off", &|| {
-            std::fs::write(&document, &right[..right.len() / 3]).unwrap()
+            std::fs::write(&document, &right[..right.len() / 3]).unwrap();
         }),
         ("another verdict", &|| {
             let other = right[at..].replacen("explained", "unlisted", 1);
             std::fs::write(&document, format!("{}{other}", &right[..at])).unwrap();
         }),
         ("another number", &|| {
-            std::fs::write(&improved, model.replacen('1', "2", 1)).unwrap()
+            std::fs::write(&improved, model.replacen('1', "2", 1)).unwrap();
         }),
         ("a table is missing", &|| {
-            std::fs::remove_file(&table).unwrap()
+            std::fs::remove_file(&table).unwrap();
         }),
     ];
     for (how, damage) in damages {

@@ -149,7 +149,7 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
                 return show_existing(arguments, &out, &existing);
             }
             Some(Err(why)) => {
-                say_aside(&format!("note: {}: {why}; diagnosed again", out.display()))
+                say_aside(&format!("note: {}: {why}; diagnosed again", out.display()));
             }
             None => (),
         }

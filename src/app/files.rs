@@ -326,7 +326,8 @@ fn finish(unfinished: UnfinishedFolder, all: &[&str], names: &[&str]) -> Result<
     let gone: Vec<&str> = gone.copied().collect();
     // The numbers last: where they stand, the rest does.
     let mut names = names.to_vec();
-    names.sort_by_key(|name| name.ends_with(".json") && *name != DRAWING);
+    let is_json = |name: &str| Path::new(name).extension().is_some_and(|end| end == "json");
+    names.sort_by_key(|name| is_json(name) && *name != DRAWING);
     Ok(unfinished.finish(&names, &gone, &[TASKS])?)
 }
 

@@ -363,7 +363,7 @@ fn text(out: &Path, samples: usize, notes: &[String], off: &[Error<'_>]) -> Stri
             significant(factor * rms * noise, 3)
         );
     }
-    let _ = writeln!(text, "{samples} samples written to {}", shown_path(&out));
+    let _ = writeln!(text, "{samples} samples written to {}", shown_path(out));
     text
 }
 

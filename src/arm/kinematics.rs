@@ -111,12 +111,50 @@ pub fn smallest_singular_value(
     }
 }
 
-/// Singular values of the length-scaled Jacobian, largest first; see [`smallest_singular_value`].
-pub fn singular_values(jacobian: &Jacobian, characteristic_length: f64) -> [f64; 6] {
+/// Whether [`smallest_singular_value`] is at least so large: by a factorisation, without the values.
+///
+/// ```text
+/// s_min >= s  <=>  J J^T - s^2 I is positive definite  (J^T J with fewer than six joints)
+/// ```
+pub fn is_singular_value_at_least(
+    jacobian: &Jacobian,
+    joints: usize,
+    characteristic_length: f64,
+    least: f64,
+) -> bool {
+    if least <= 0.0 {
+        return true;
+    }
+    let scaled = length_scaled(jacobian, characteristic_length);
+    let mut square = if joints < 6 {
+        let columns = scaled.fixed_columns::<6>(0);
+        let mut square = columns.tr_mul(&columns);
+        for past in joints..6 {
+            square[(past, past)] = f64::MAX.sqrt();
+        }
+        square
+    } else {
+        scaled * scaled.transpose()
+    };
+    // To the safe side of rounding.
+    let level = least * least * (1.0 + 1e-9);
+    for row in 0..6 {
+        square[(row, row)] -= level;
+    }
+    square.cholesky().is_some()
+}
+
+fn length_scaled(jacobian: &Jacobian, characteristic_length: f64) -> Jacobian {
     let mut scaled = *jacobian;
     scaled
         .fixed_rows_mut::<3>(0)
         .scale_mut(1.0 / characteristic_length);
+    scaled
+}
+
+/// Singular values of the length-scaled Jacobian, largest first; see [`smallest_singular_value`].
+pub fn singular_values(jacobian: &Jacobian, characteristic_length: f64) -> [f64; 6] {
+    let scaled = length_scaled(jacobian, characteristic_length);
     let mut values: [f64; 6] = scaled.singular_values().into();
     values.sort_by(|a, b| b.total_cmp(a));
     values
@@ -146,6 +184,25 @@ mod tests {
                 "{torque} against {expected}"
             );
         }
+    }
+
+    #[test]
+    fn a_factorisation_says_on_which_side_of_a_limit_the_smallest_singular_value_lies() {
+        for (seed, count) in [(1, 2), (2, 4), (3, 5), (4, 6), (5, 7), (6, 9)] {
+            let chain = random_chain(seed, count);
+            for draw in 0..20 {
+                let q = random_positions(100 * seed + draw, count);
+                let jacobian = geometric_jacobian(&chain, DPose3::IDENTITY, &q, DVec3::X);
+                let value = smallest_singular_value(&jacobian, count, 0.3);
+                let is =
+                    |share: f64| is_singular_value_at_least(&jacobian, count, 0.3, share * value);
+                assert!(is(0.999) && is(0.5) && is(-1.0), "{count} joints, {value}");
+                assert!(!is(1.0) && !is(1.001), "{count} joints, {value}");
+            }
+        }
+        let (planar, _) = planar_two_link();
+        let stretched = geometric_jacobian(&planar, DPose3::IDENTITY, &[0.3, 0.0], DVec3::ZERO);
+        assert!(!is_singular_value_at_least(&stretched, 6, 1.0, 1e-6));
     }
 
     #[test]

@@ -116,7 +116,7 @@ fn edge_line(
     svg: &mut Svg,
     path: &EdgePath,
     camera: &Camera,
-    coloured: Option<(ErrorScale, &Raster)>,
+    coloured: Option<(ErrorScale, &Raster<'_>)>,
 ) {
     let pieces = path.points_in_world.windows(2);
     let pieces: Vec<([DVec2; 2], f64)> = pieces

@@ -1,5 +1,7 @@
 //! View of triangles from one side: a shaded image with outlines, and how deep each of its pixels lies.
 
+use std::collections::VecDeque;
+
 use glam::{DVec2, DVec3};
 
 use super::faces::Face;
@@ -61,82 +63,121 @@ const AMBIENT: f64 = 0.45;
 const CREASE: f64 = 0.8;
 
 /// An image with depth, finer than it is shown.
-pub(super) struct Raster {
+pub(super) struct Raster<'a> {
     size: [usize; 2],
+    camera: Camera,
+    faces: &'a [Face],
+    /// Where each face lies in the image; none of one that is seen edge on.
+    seen: Vec<Option<Seen>>,
     depth: Vec<f32>,
-    colour: Vec<[u8; 3]>,
-    normal: Vec<[f32; 3]>,
-    body: Vec<u16>,
+    /// The face that is seen at each sample, from 1; 0 where there is none.
+    nearest: Vec<u32>,
 }
 
-impl Raster {
+/// A triangle in the image.
+#[derive(Clone, Copy)]
+struct Seen {
+    corners: [DVec2; 3],
+    depths: [f64; 3],
+    /// Twice its area, by its sense of turning [pixel^2].
+    area: f64,
+}
+
+impl Seen {
+    /// Shares of the corners in a place.
+    fn weights(&self, at: DVec2) -> [f64; 3] {
+        let ([a, b, c], area) = (self.corners, self.area);
+        [
+            (c - b).perp_dot(at - b) / area,
+            (a - c).perp_dot(at - c) / area,
+            (b - a).perp_dot(at - a) / area,
+        ]
+    }
+
+    /// Columns of a row that can lie in it, to a pixel: shares are linear along the row.
+    fn columns(&self, row: f64, [mut first, mut last]: [f64; 2]) -> [f64; 2] {
+        let [start, next] = [0.0, 1.0].map(|column| self.weights(DVec2::new(column, row)));
+        for (start, next) in start.into_iter().zip(next) {
+            let slope = next - start;
+            let at = -start / slope;
+            if slope > 0.0 {
+                first = first.max(at);
+            } else if slope < 0.0 {
+                last = last.min(at);
+            }
+        }
+        [first, last]
+    }
+}
+
+/// The middle of a sample.
+fn middle(column: usize, row: usize) -> DVec2 {
+    DVec2::new(column as f64 + 0.5, row as f64 + 0.5)
+}
+
+/// What is seen at a sample.
+#[derive(Clone, Copy, Default)]
+struct Sample {
+    colour: [u8; 3],
+    normal: [f32; 3],
+    /// 0 where there is none.
+    body: u16,
+}
+
+impl Sample {
+    /// Whether a body, or a crease of one, ends between two samples.
+    fn parts(&self, other: &Self) -> bool {
+        if self.body != other.body {
+            return true;
+        }
+        let ([a, b, c], [d, e, f]) = (self.normal, other.normal);
+        self.body != 0 && f64::from(a * d + b * e + c * f) < CREASE
+    }
+}
+
+impl<'a> Raster<'a> {
     /// Triangles as a camera sees them, in a picture of this size [pixel].
-    pub(super) fn of(faces: &[Face], camera: &Camera, size: [usize; 2]) -> Self {
+    pub(super) fn of(faces: &'a [Face], camera: &Camera, size: [usize; 2]) -> Self {
         let fine = size.map(|length| length * FINE);
         let count = fine[0] * fine[1];
         let mut raster = Self {
             size: fine,
+            camera: *camera,
+            faces,
+            seen: faces.iter().map(|face| seen(face, camera)).collect(),
             depth: vec![f32::NEG_INFINITY; count],
-            colour: vec![[0; 3]; count],
-            normal: vec![[0.0; 3]; count],
-            body: vec![0; count],
+            nearest: vec![0; count],
         };
-        for face in faces {
-            raster.fill(face, camera);
+        for face in 0..faces.len() {
+            raster.fill(face);
         }
         raster
     }
 
-    fn fill(&mut self, face: &Face, camera: &Camera) {
-        let seen = face.corners.map(|corner| camera.project(corner));
-        let [a, b, c] = seen.map(|(place, _)| place * FINE as f64);
-        let area = (b - a).perp_dot(c - a);
-        // Sheets and meshes with loose winding are seen from behind too.
-        if area.abs() < 1e-9 {
+    fn fill(&mut self, face: usize) {
+        let Some(seen) = self.seen[face] else {
             return;
-        }
+        };
+        let [a, b, c] = seen.corners;
         let low = a.min(b).min(c).max(DVec2::ZERO);
         let high = a.max(b).max(c);
         let last = |value: f64, count: usize| (value.ceil().max(0.0) as usize).min(count);
-        let columns = low.x.floor() as usize..last(high.x, self.size[0]);
-        let rows = low.y.floor() as usize..last(high.y, self.size[1]);
-        for row in rows {
-            for column in columns.clone() {
-                let at = DVec2::new(column as f64 + 0.5, row as f64 + 0.5);
-                let weights = [
-                    (c - b).perp_dot(at - b) / area,
-                    (a - c).perp_dot(at - c) / area,
-                    (b - a).perp_dot(at - a) / area,
-                ];
+        for row in low.y.floor() as usize..last(high.y, self.size[1]) {
+            let [from, to] = seen.columns(row as f64 + 0.5, [low.x, high.x]);
+            let from = (from - 1.5).max(low.x.floor()) as usize;
+            for column in from..last(to + 1.0, last(high.x, self.size[0])) {
+                let weights = seen.weights(middle(column, row));
                 if weights.iter().any(|weight| *weight < 0.0) {
                     continue;
                 }
-                let depth = (0..3).map(|i| weights[i] * seen[i].1).sum::<f64>() as f32;
+                let depth = (0..3).map(|i| weights[i] * seen.depths[i]).sum::<f64>() as f32;
                 let index = row * self.size[0] + column;
                 if depth > self.depth[index] {
-                    let normal: DVec3 = (0..3).map(|i| weights[i] * face.normals[i]).sum();
-                    self.put(index, depth, normal.normalize_or(camera.eye), face, camera);
+                    self.depth[index] = depth;
+                    self.nearest[index] = face as u32 + 1;
                 }
             }
         }
-    }
-
-    fn put(&mut self, index: usize, depth: f32, normal: DVec3, face: &Face, camera: &Camera) {
-        // Light from above the eye's left shoulder.
-        let light = (camera.eye - 0.35 * camera.right - 0.5 * camera.down).normalize();
-        let normal = if normal.dot(camera.eye) < 0.0 {
-            -normal
-        } else {
-            normal
-        };
-        let share = AMBIENT + (1.0 - AMBIENT) * normal.dot(light).max(0.0);
-        // Dark bodies keep their shape in either theme.
-        let shade = |value: u8| ((0.25 * 150.0 + 0.75 * f64::from(value)) * share).min(255.0) as u8;
-        let [red, green, blue, _] = face.colour;
-        self.depth[index] = depth;
-        self.colour[index] = [red, green, blue].map(shade);
-        self.normal[index] = normal.as_vec3().to_array();
-        self.body[index] = face.body;
     }
 
     /// Depth towards the eye of what is seen at a place of the image [m]; minus infinity where there is nothing.
@@ -152,56 +193,104 @@ impl Raster {
         f64::from(self.depth[row * self.size[0] + column])
     }
 
-    /// Whether a body, or a crease of one, ends between two samples.
-    fn parts(&self, one: usize, other: usize) -> bool {
-        if self.body[one] != self.body[other] {
-            return true;
-        }
-        let [a, b] = [one, other].map(|index| self.normal[index]);
-        let cosine = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-        self.body[one] != 0 && f64::from(cosine) < CREASE
+    /// The samples of a row, shaded.
+    fn samples(&self, row: usize) -> Vec<Sample> {
+        let camera = &self.camera;
+        // Light from above the eye's left shoulder.
+        let light = (camera.eye - 0.35 * camera.right - 0.5 * camera.down).normalize();
+        let start = row * self.size[0];
+        let nearest = self.nearest[start..start + self.size[0]].iter().enumerate();
+        let sample = |(column, nearest): (usize, &u32)| {
+            let face = (*nearest as usize).checked_sub(1);
+            let Some((face, seen)) = face.and_then(|f| Some((&self.faces[f], self.seen[f]?)))
+            else {
+                return Sample::default();
+            };
+            let weights = seen.weights(middle(column, row));
+            let normal: DVec3 = (0..3).map(|i| weights[i] * face.normals[i]).sum();
+            let normal = normal.normalize_or(camera.eye);
+            let normal = if normal.dot(camera.eye) < 0.0 {
+                -normal
+            } else {
+                normal
+            };
+            let share = AMBIENT + (1.0 - AMBIENT) * normal.dot(light).max(0.0);
+            // Dark bodies keep their shape in either theme.
+            let shade =
+                |value: u8| ((0.25 * 150.0 + 0.75 * f64::from(value)) * share).min(255.0) as u8;
+            let [red, green, blue, _] = face.colour;
+            Sample {
+                colour: [red, green, blue].map(shade),
+                normal: normal.as_vec3().to_array(),
+                body: face.body,
+            }
+        };
+        nearest.map(sample).collect()
     }
 
     /// Red, green, blue and opacity of the image, row by row.
     pub(super) fn pixels(&self) -> Vec<u8> {
         let [width, height] = self.size;
-        let is_line = |column: usize, row: usize| {
-            let own = row * width + column;
-            let right = column + 1 < width && self.parts(own, own + 1);
-            let below = row + 1 < height && self.parts(own, own + width);
-            right || below
-        };
         let mut pixels = Vec::with_capacity(4 * width * height / (FINE * FINE));
+        // Those of a pixel, and the row below.
+        let mut rows: VecDeque<Vec<Sample>> = VecDeque::new();
         for row in (0..height).step_by(FINE) {
-            for column in (0..width).step_by(FINE) {
-                let mut sum = [0u32; 3];
-                let mut covered = 0;
-                for (down, on) in (0..FINE * FINE).map(|i| (i / FINE, i % FINE)) {
-                    let (column, row) = (column + on, row + down);
-                    let index = row * width + column;
-                    let line = is_line(column, row);
-                    if self.body[index] == 0 && !line {
-                        continue;
-                    }
-                    covered += 1;
-                    for (sum, value) in sum.iter_mut().zip(self.colour[index]) {
-                        *sum += match line {
-                            true => 45,
-                            false => u32::from(value),
-                        };
-                    }
-                }
-                let mean = |sum: u32| (sum / covered.max(1)) as u8;
-                let opacity = 255 * covered / (FINE * FINE) as u32;
-                pixels.extend([mean(sum[0]), mean(sum[1]), mean(sum[2]), opacity as u8]);
+            for next in row + rows.len()..(row + FINE + 1).min(height) {
+                rows.push_back(self.samples(next));
             }
+            for column in (0..width).step_by(FINE) {
+                pixels.extend(pixel(&rows, column));
+            }
+            rows.drain(..FINE);
         }
         pixels
     }
 }
 
+/// Where a face lies in the image. Sheets and meshes with loose winding are seen from behind too.
+fn seen(face: &Face, camera: &Camera) -> Option<Seen> {
+    let seen = face.corners.map(|corner| camera.project(corner));
+    let corners = seen.map(|(place, _)| place * FINE as f64);
+    let [a, b, c] = corners;
+    let area = (b - a).perp_dot(c - a);
+    (area.abs() >= 1e-9).then_some(Seen {
+        corners,
+        depths: seen.map(|(_, depth)| depth),
+        area,
+    })
+}
+
+/// Mean of the samples of a pixel that starts at a column; lines divide bodies, and creases of one.
+fn pixel(rows: &VecDeque<Vec<Sample>>, column: usize) -> [u8; 4] {
+    let mut sum = [0u32; 3];
+    let mut covered = 0;
+    for (down, on) in (0..FINE * FINE).map(|i| (i / FINE, i % FINE)) {
+        let column = column + on;
+        let own = &rows[down][column];
+        let right = rows[down].get(column + 1);
+        let below = rows.get(down + 1).map(|row| &row[column]);
+        let is_line = right.into_iter().chain(below).any(|next| own.parts(next));
+        if own.body == 0 && !is_line {
+            continue;
+        }
+        covered += 1;
+        for (sum, value) in sum.iter_mut().zip(own.colour) {
+            *sum += match is_line {
+                true => 45,
+                false => u32::from(value),
+            };
+        }
+    }
+    let mean = |sum: u32| (sum / covered.max(1)) as u8;
+    let opacity = 255 * covered / (FINE * FINE) as u32;
+    [mean(sum[0]), mean(sum[1]), mean(sum[2]), opacity as u8]
+}
+
 #[cfg(test)]
 mod tests {
+    use rand::{Rng, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
     use super::*;
 
     fn sheet(height: f64, colour: u8, body: u16) -> [Face; 2] {
@@ -249,5 +338,43 @@ mod tests {
         assert!((place - DVec2::splat(50.0)).length() < 1e-9);
         let (right, _) = camera.project(DVec3::new(2.0, 0.5, 0.0));
         assert!((right - DVec2::new(90.0, 50.0)).length() < 1e-9, "{right}");
+    }
+
+    #[test]
+    fn each_sample_sees_the_nearest_of_all_faces_that_hold_it() {
+        let mut chance = ChaCha8Rng::seed_from_u64(3);
+        let mut point = |size: f64| size * (2.0 * DVec3::from_array(chance.random()) - 1.0);
+        let faces: Vec<Face> = (0..300)
+            .map(|number| {
+                let (middle, size) = (point(1.0), [0.05, 0.4, 2.0][number % 3]);
+                Face {
+                    corners: [0; 3].map(|_| middle + point(size)),
+                    normals: [DVec3::Z; 3],
+                    colour: [90, 0, 0, 255],
+                    body: 1,
+                }
+            })
+            .collect();
+        let shown = faces.iter().take(200).flat_map(|face| face.corners);
+        let camera = Camera::on(shown, DVec3::new(1.0, 0.4, 0.7), [60.0, 40.0], 0.0);
+        let raster = Raster::of(&faces, &camera, [60, 40]);
+        let mut covered = 0;
+        for row in 0..raster.size[1] {
+            for column in 0..raster.size[0] {
+                let mut nearest = (f32::NEG_INFINITY, 0);
+                for (number, seen) in raster.seen.iter().enumerate() {
+                    let weights = seen.unwrap().weights(middle(column, row));
+                    let depth = (0..3).map(|i| weights[i] * seen.unwrap().depths[i]);
+                    let depth = depth.sum::<f64>() as f32;
+                    if weights.iter().all(|weight| *weight >= 0.0) && depth > nearest.0 {
+                        nearest = (depth, number as u32 + 1);
+                    }
+                }
+                let index = row * raster.size[0] + column;
+                assert_eq!((raster.depth[index], raster.nearest[index]), nearest);
+                covered += usize::from(nearest.1 > 0);
+            }
+        }
+        assert!(covered > 3000, "{covered}");
     }
 }

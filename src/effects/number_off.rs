@@ -159,4 +159,24 @@ mod tests {
             assert_eq!(effect.vocabulary(), (NUMBER_OFF, None));
         }
     }
+
+    #[test]
+    fn each_may_be_off_by_its_shares_within_what_can_be() {
+        let plant = crate::plant::PlantParameters::default();
+        for (place, suspect) in SUSPECTS.iter().enumerate() {
+            let nominal = suspect.number.quantity().get(&plant);
+            let [low, high] = parameters(&plant, place)[0].bounds;
+            let [least, most] = suspect.number.range;
+            assert!(least <= low && high <= most, "{low} to {high}");
+            let [down, up] = suspect.range;
+            // Only a rod's end and a bore's are nearer than that, and what no key allows.
+            let is_free = place > 1 && down * nominal > least && up * nominal < most;
+            if is_free {
+                assert!((low / nominal - down).abs() < 1e-12, "{low} of {nominal}");
+                assert!((high / nominal - up).abs() < 1e-12, "{high} of {nominal}");
+            }
+        }
+        assert!(parameters(&plant, 0)[0].bounds[0] > plant.device.rod);
+        assert!(parameters(&plant, 1)[0].bounds[1] < plant.device.bore);
+    }
 }

@@ -152,3 +152,20 @@ fn starts(clues: &Clues<'_>, place: usize) -> Vec<Vec<f64>> {
     let written = free.iter().map(|c| c.value).collect();
     vec![written, through(0.2), through(0.8)]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_of_one_sign_and_of_unknown_size_is_sought_by_its_size() {
+        for (bounds, expected) in [
+            ([1.0, 100.0], Coordinate::Logarithmic),
+            ([1.0, 21.0], Coordinate::Linear(2.0)),
+            ([0.0, 100.0], Coordinate::Linear(10.0)),
+            ([-40.0, 100.0], Coordinate::Linear(14.0)),
+        ] {
+            assert_eq!(coordinate(bounds), expected, "{bounds:?}");
+        }
+    }
+}

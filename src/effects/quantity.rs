@@ -34,3 +34,21 @@ impl Coordinate {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_comes_back_from_its_coordinate_and_moves_with_it_by_the_slope() {
+        for coordinate in [Coordinate::Linear(0.25), Coordinate::Logarithmic] {
+            for value in [0.3, 2.0, 70.0] {
+                let at = coordinate.of(value);
+                assert!((coordinate.value(at) / value - 1.0).abs() < 1e-12);
+                let [low, high] = [-1e-5, 1e-5].map(|step| coordinate.value(at + step));
+                let slope = (high - low) / 2e-5;
+                assert!((coordinate.slope(value) / slope - 1.0).abs() < 1e-8);
+            }
+        }
+    }
+}

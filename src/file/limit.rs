@@ -7,13 +7,13 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Bytes of a megabyte.
-const MB: u64 = 1_000_000;
+const MEGABYTE: u64 = 1_000_000;
 /// Bytes that a file of settings may have: scenarios, maps and the like.
-const SETTINGS: u64 = 8 * MB;
+const SETTINGS: u64 = 8 * MEGABYTE;
 /// Bytes of one that is read whole.
-const WHOLE: u64 = 400 * MB;
+const WHOLE: u64 = 400 * MEGABYTE;
 /// Bytes that any may be unpacked to, and how many times its size.
-const UNPACKED: u64 = 256 * MB;
+const UNPACKED: u64 = 256 * MEGABYTE;
 const TIMES: u64 = 200;
 
 /// What raises the limits, for messages.
@@ -24,12 +24,12 @@ static RAISED: AtomicU64 = AtomicU64::new(0);
 
 /// Raises the limits of all files that are read from here on [MB].
 pub fn raise(megabytes: u64) {
-    RAISED.store(megabytes.saturating_mul(MB), Ordering::Relaxed);
+    RAISED.store(megabytes.saturating_mul(MEGABYTE), Ordering::Relaxed);
 }
 
 /// Bytes as a message has them.
 pub fn megabytes(bytes: u64) -> String {
-    match bytes as f64 / MB as f64 {
+    match bytes as f64 / MEGABYTE as f64 {
         least if least < 0.1 => format!("{:.1} kB", 1e3 * least),
         few if few < 10.0 => format!("{few:.1} MB"),
         many => format!("{many:.0} MB"),
@@ -44,7 +44,7 @@ impl Limit {
     /// Limits of a file that may come to so many megabytes, if that is said.
     #[must_use]
     pub fn of(megabytes: Option<u64>) -> Self {
-        Self(megabytes.map(|megabytes| megabytes.saturating_mul(MB)))
+        Self(megabytes.map(|megabytes| megabytes.saturating_mul(MEGABYTE)))
     }
 
     fn given(self) -> Option<u64> {
@@ -95,15 +95,19 @@ mod tests {
     #[test]
     fn what_comes_to_more_than_200_times_its_size_and_256_mb_is_refused() {
         let usual = Limit::default();
-        assert_eq!(usual.unpacked(0), 256 * MB);
-        assert_eq!(usual.unpacked(MB), 256 * MB);
-        assert_eq!(usual.unpacked(3 * MB / 2), 300 * MB);
-        assert_eq!(usual.unpacked(20 * MB), 400 * MB);
-        assert_eq!(usual.passed(20 * MB), 4000 * MB);
+        assert_eq!(usual.unpacked(0), 256 * MEGABYTE);
+        assert_eq!(usual.unpacked(MEGABYTE), 256 * MEGABYTE);
+        assert_eq!(usual.unpacked(3 * MEGABYTE / 2), 300 * MEGABYTE);
+        assert_eq!(usual.unpacked(20 * MEGABYTE), 400 * MEGABYTE);
+        assert_eq!(usual.passed(20 * MEGABYTE), 4000 * MEGABYTE);
         let given = Limit::of(Some(3));
         assert_eq!(
-            [given.unpacked(MB), given.passed(MB), given.whole()],
-            [3 * MB; 3]
+            [
+                given.unpacked(MEGABYTE),
+                given.passed(MEGABYTE),
+                given.whole()
+            ],
+            [3 * MEGABYTE; 3]
         );
         assert_eq!(given.settings(), SETTINGS);
     }

@@ -136,7 +136,7 @@ mod tests {
         );
         let said = read(folder.path()).unwrap_err().to_string();
         assert!(said.contains("folder"), "{said}");
-        let none = read(&folder.path().join("b")).unwrap_err();
+        let none = read(folder.path().join("b")).unwrap_err();
         assert_eq!(none.kind(), ErrorKind::NotFound);
     }
 

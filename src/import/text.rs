@@ -6,7 +6,7 @@ use super::encoding::{DetectedEncoding, decode};
 use super::error::ImportError;
 use super::map::Separator;
 use super::packed::text_bytes;
-use crate::file::{Limit, megabytes};
+use crate::file::{Limit, RAISED_BY, megabytes};
 
 mod columns;
 mod reading;
@@ -20,6 +20,8 @@ pub(super) use rows::{read, read_content};
 /// Fields of a row, and bytes of a line, at most.
 const MOST_FIELDS: usize = 1 << 16;
 const LONGEST: usize = 1_000_000;
+/// What a row of few letters takes to be held [byte].
+const ROW: u64 = 64;
 
 /// The lines of a text, those before its rows apart.
 pub(super) struct Sheet {
@@ -35,9 +37,15 @@ pub(super) struct Sheet {
 
 impl Sheet {
     /// Takes a text apart, or says what the reader cannot.
-    pub fn of(text: &str, header_lines: usize, separator: &Separator) -> Result<Self, String> {
+    pub fn of(
+        text: &str,
+        header_lines: usize,
+        separator: &Separator,
+        limit: Limit,
+    ) -> Result<Self, String> {
         let (header, body) = split_after(text, header_lines);
-        let rows = records(body, header.len() as u64, separator)?;
+        let most = usize::try_from(limit.whole() / ROW).unwrap_or(usize::MAX);
+        let rows = records(body, header.len() as u64, separator, most)?;
         let last = rows.last().map_or(0, |(_, row)| row.len());
         Ok(Self {
             // A log that was cut off ends within a field, and what stands of it may be another number.
@@ -90,7 +98,7 @@ fn with_like_ends(text: String) -> String {
 
 /// The fields of one line.
 pub(super) fn fields(line: &str, separator: &Separator) -> Vec<String> {
-    let records = records(line, 0, separator).unwrap_or_default();
+    let records = records(line, 0, separator, usize::MAX).unwrap_or_default();
     let first = records.into_iter().next();
     first.map_or_else(Vec::new, |(_, record)| {
         record.iter().map(str::to_owned).collect()
@@ -127,14 +135,26 @@ fn split_after(text: &str, count: usize) -> (Vec<&str>, &str) {
     (lines, rest)
 }
 
-/// The fields of each line that has any, with its number from 1, that many lines standing before.
-fn records(text: &str, before: u64, separator: &Separator) -> Result<Vec<(u64, Record)>, String> {
+/// The fields of each line that has any, with its number from 1, that many lines standing before; of `most` such lines at most.
+fn records(
+    text: &str,
+    before: u64,
+    separator: &Separator,
+    most: usize,
+) -> Result<Vec<(u64, Record)>, String> {
+    let push = |rows: &mut Vec<_>, line: u64, record: Record| {
+        if rows.len() == most {
+            return Err(format!("it has more than {most} rows; {RAISED_BY}"));
+        }
+        rows.push((line, few(line, record)?));
+        Ok(())
+    };
     let plain = |split: &dyn Fn(&str) -> Record| {
         let lines = (before + 1..).zip(text.lines());
         let filled = lines.filter(|(_, line)| !line.trim().is_empty());
         let mut rows = Vec::new();
         for (line, text) in filled {
-            rows.push((line, few(line, split(text))?));
+            push(&mut rows, line, split(text))?;
         }
         Ok(rows)
     };
@@ -150,7 +170,7 @@ fn records(text: &str, before: u64, separator: &Separator) -> Result<Vec<(u64, R
             let mut rows = Vec::new();
             while reader.read_record(&mut record).map_err(|e| e.to_string())? {
                 let line = before + record.position().map_or(0, csv::Position::line);
-                rows.push((line, few(line, Record::of(record.iter()))?));
+                push(&mut rows, line, Record::of(record.iter()))?;
             }
             Ok(rows)
         }

@@ -118,7 +118,7 @@ pub(super) fn parse(bytes: &[u8], folder: &Path) -> Result<MeshFile, Fault> {
     } else {
         (bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), None)
     };
-    let count = |letter: u8| json.iter().filter(|byte| **byte == letter).count();
+    let count = |letter: u8| json.split(|byte| *byte == letter).count() - 1;
     if count(b'{') > MOST_OBJECTS || count(b',') > MOST_ENTRIES {
         return Err(Fault::unsupported(
             format!(

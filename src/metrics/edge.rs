@@ -174,6 +174,7 @@ mod tests {
         near(summary.residual_burr_max_mm, 0.1);
         near(summary.removed_volume_mm3, 100.0 * 0.07);
         near(summary.section_variation_percent, 0.0);
+        near(summary.section_removed_mean_mm2, 0.07);
         // Ten stations are ends, one of them bad; twelve of all.
         near(summary.ends_out_of_tolerance_share_percent, 10.0);
         near(summary.whole_edge_out_of_tolerance_share_percent, 12.0);

@@ -98,3 +98,56 @@ pub(super) fn wall_time(summary: &Summary) -> Option<String> {
     let wall = with_unit(summary.timing?.wall_time_s, "s");
     Some(format!("computed in {wall}"))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    type Note = fn(&Summary) -> Option<String>;
+
+    #[test]
+    fn each_note_says_the_number_that_it_is_about() {
+        let summary = Summary {
+            desired_force_n: 100.0,
+            force_mean_n: Some(103.0),
+            force_rms_error_percent: Some(3.25),
+            engagement_overshoot_percent: Some(7.5),
+            chamfer_leg_min_mm: Some(0.25),
+            chamfer_leg_max_mm: Some(0.5),
+            residual_burr_share_percent: Some(12.5),
+            whole_edge_out_of_tolerance_share_percent: Some(6.25),
+            ends_length_mm: Some(4.5),
+            ends_chamfer_leg_min_mm: Some(0.125),
+            ends_chamfer_leg_max_mm: Some(0.75),
+            removal_rate_mean_mm3_per_s: Some(2.5),
+            stroke_min_mm: Some(20.5),
+            stroke_max_mm: Some(31.5),
+            feed_mean_mm_per_s: Some(19.5),
+            most_loaded_joint: Some("elbow".to_owned()),
+            follow_duration_s: Some(14.5),
+            ..Summary::default()
+        };
+        let notes: [(Note, &[&str]); 12] = [
+            (from_desired, &["desired 100", "3"]),
+            (of_desired, &["3.250 % of the desired force"]),
+            (above_desired, &["7.5", "% above desired"]),
+            (legs, &["from 0.25", "to 0.5"]),
+            (too_much_burr, &["too much of it on 12.5"]),
+            (with_its_ends, &["with its ends 6.25"]),
+            (length_of_ends, &["4.5", "mm at either end"]),
+            (legs_of_ends, &["from 0.125", "to 0.75"]),
+            (rate, &["at 2.5", "while cutting"]),
+            (strokes, &["from 20.5", "to 31.5"]),
+            (feed, &["at 19.5", "on average"]),
+            (most_loaded, &["largest, at elbow"]),
+        ];
+        for (note, parts) in notes {
+            let text = note(&summary).unwrap();
+            assert!(parts.iter().all(|part| text.contains(part)), "{text}");
+            assert_eq!(note(&Summary::default()), None);
+        }
+        let text = following(&summary).unwrap();
+        assert!(text.starts_with("following 14.5") && text.ends_with("of it"));
+        assert_eq!(of_first_pass(&summary), None);
+    }
+}

@@ -194,8 +194,8 @@ fn limits(request: &PlanRequest, mounted: &MountedArm, plan: &Plan) -> Result<()
 fn singularities(mounted: &MountedArm, plan: &Plan) -> Result<(), PlanError> {
     for leg in &plan.legs {
         for (index, q) in leg.spline.values().iter().enumerate() {
-            let value = mounted.singularity(q);
-            if value < SINGULAR_LIMIT {
+            if !mounted.is_regular(q, SINGULAR_LIMIT) {
+                let value = mounted.singularity(q);
                 let axis = mounted.weakest_axis(q);
                 let obstacle = Obstacle::Singular {
                     value,

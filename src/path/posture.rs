@@ -4,7 +4,7 @@
 
 use glam::{DQuat, DVec3};
 use glamx::DPose3;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, Vector6};
 
 use super::error::Obstacle;
 use super::request::PlanRequest;
@@ -12,11 +12,14 @@ use crate::arm::chain::{KinematicChain, MAX_JOINTS};
 use crate::arm::dynamics::gravity_torques;
 use crate::arm::inverse_kinematics::{IkOptions, TipOrientation, distinct_solutions, solve};
 use crate::arm::kinematics::{
-    Jacobian, jacobian_at, link_poses, smallest_singular_value, tip_pose,
+    Jacobian, is_singular_value_at_least, jacobian_at, link_poses, smallest_singular_value,
+    tip_pose,
 };
 
 /// Least singular value of the scaled Jacobian that is accepted [1].
 pub(super) const SINGULAR_LIMIT: f64 = 0.015;
+/// That which is comfortable [1].
+const COMFORTABLE: f64 = 0.15;
 /// Newton steps to each pose; neighbouring poses need two or three, the coarse ones by which a posture is chosen up to six.
 const STEPS: usize = 6;
 /// Shortest part of the way between two neighbouring poses that is tried [1].
@@ -74,6 +77,13 @@ impl MountedArm<'_> {
             self.chain.len(),
             self.characteristic_length(),
         )
+    }
+
+    /// Whether [`Self::singularity`] is at least so large.
+    pub fn is_regular(&self, q: &[f64], least: f64) -> bool {
+        let jacobian = self.task_jacobian(q);
+        let length = self.characteristic_length();
+        is_singular_value_at_least(&jacobian, self.chain.len(), length, least)
     }
 
     /// Jacobian of the flange; of an arm with five axes or less without the turning about the tool's axis, which it need not master.
@@ -170,9 +180,8 @@ impl MountedArm<'_> {
         } else {
             &[DVec3::X, DVec3::Y, DVec3::Z]
         };
-        let rows = 3 + axes.len();
-        let mut task = DMatrix::zeros(rows, count);
-        let mut error = DVector::zeros(rows);
+        let mut task = Jacobian::zeros();
+        let mut error = Vector6::zeros();
         for (row, value) in shift.to_array().into_iter().enumerate() {
             error[row] = value;
         }
@@ -192,9 +201,10 @@ impl MountedArm<'_> {
                 task[(3 + row, column)] = axis.dot(angular);
             }
         }
-        let mut square = &task * task.transpose();
-        for row in 0..rows {
-            square[(row, row)] += 1e-12;
+        let mut square = task * task.transpose();
+        for row in 0..6 {
+            // Rows that are not asked for lead nowhere.
+            square[(row, row)] += if row < 3 + axes.len() { 1e-12 } else { 1.0 };
         }
         if let Some(factor) = square.cholesky() {
             let step = task.transpose() * factor.solve(&error);
@@ -307,9 +317,23 @@ impl MountedArm<'_> {
         most.map_or_else(String::new, |joint| self.chain.joints[joint].name.clone())
     }
 
-    /// Comfort of joint angles, the least of: distance from singularity, from position limits, from torque limits under gravity, each 1 where it is comfortable,
-    /// the device's included, and `tool_force` on the tool [N, world]; negative below the floor.
-    fn comfort(&self, q: &[f64], tool_force: DVec3) -> f64 {
+    /// Comfort of a way, the least of its poses': distance from singularity, from position limits, from torque limits under gravity, each 1 where it is
+    /// comfortable, the device's included, and the forces on the tool [N, world]; negative below the floor.
+    fn comfort(&self, angles: &[Vec<f64>], tool_forces: &[DVec3]) -> f64 {
+        let poses = angles.iter().zip(tool_forces);
+        let of_limits = poses.map(|(q, &force)| self.distance_from_limits(q, force));
+        let least = of_limits.fold(f64::INFINITY, f64::min);
+        // Most poses are farther from singularity than some other is from its limits.
+        angles.iter().fold(least, |least, q| {
+            match self.is_regular(q, COMFORTABLE * least) {
+                true => least,
+                false => least.min(self.singularity(q) / COMFORTABLE),
+            }
+        })
+    }
+
+    /// Comfort of joint angles, the distance from singularity apart.
+    fn distance_from_limits(&self, q: &[f64], tool_force: DVec3) -> f64 {
         let count = self.chain.len();
         let mut position = [0.0; MAX_JOINTS];
         position[..count].copy_from_slice(q);
@@ -320,7 +344,7 @@ impl MountedArm<'_> {
         link_poses(self.loaded, self.world_from_base, position, links);
         let tool = links[count] * self.loaded.tip_from_last;
         let jacobian = jacobian_at(self.loaded, links, tool.translation);
-        let mut comfort = self.singularity(q) / 0.15;
+        let mut comfort = f64::INFINITY;
         let mut torques = [0.0; MAX_JOINTS];
         gravity_torques(
             self.loaded,
@@ -456,11 +480,7 @@ impl MountedArm<'_> {
             for start in starts {
                 match self.track(&poses, &start) {
                     Ok(angles) => {
-                        let comfort = angles
-                            .iter()
-                            .zip(&forces)
-                            .map(|(q, &force)| self.comfort(q, force))
-                            .fold(f64::INFINITY, f64::min);
+                        let comfort = self.comfort(&angles, &forces);
                         // Beyond comfortable all are as good as each other.
                         let mut worth = comfort.min(1.0);
                         if let Some(posture) = request.seed_posture {

@@ -231,4 +231,15 @@ mod tests {
         assert!(bare.is_dry() && !bare.under(0.0).is_dry());
         assert!((bare.stiffness() - 3.0 / 5e-5).abs() < 1e-9);
     }
+
+    #[test]
+    fn seals_without_dry_friction_have_bristles_that_stay_as_they_are() {
+        let viscous = SealFriction {
+            coulomb: 0.0,
+            static_force: 0.0,
+            ..SEALS
+        };
+        assert_eq!(viscous.deflection_after(1e-6, 0.01, 0.2), 1e-6);
+        assert_eq!(SEALS.deflection_after(1e-6, 0.0, 0.2), 1e-6);
+    }
 }

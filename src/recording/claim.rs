@@ -18,7 +18,9 @@ const CLAIM: &str = ".unfinished-claim";
 pub struct Claim {
     path: PathBuf,
     file: File,
-    _begun: Begun,
+    /// Goes with an interruption.
+    #[expect(dead_code, reason = "held until it is dropped")]
+    begun: Begun,
 }
 
 impl Claim {
@@ -52,8 +54,8 @@ impl Claim {
             }
             // The one before may have ended, and taken its file away, since it was opened here.
             if is_still_at(&file, &path) {
-                let _begun = Begun::note(&mut begun, &path);
-                return Ok(Some(Self { path, file, _begun }));
+                let begun = Begun::note(&mut begun, &path);
+                return Ok(Some(Self { path, file, begun }));
             }
         }
     }

@@ -110,7 +110,7 @@ pub fn read_sealed(path: &Path, of: &str) -> Result<String, SealError> {
         Ok(_) => (),
     }
     let mut text = String::new();
-    let file = std::fs::File::open(path).map_err(unreadable)?;
+    let file = crate::file::open(path).map_err(unreadable)?;
     match file.take(LARGEST).read_to_string(&mut text) {
         Err(e) if e.kind() == std::io::ErrorKind::InvalidData => return Err(SealError::Changed),
         read => read.map_err(unreadable)?,

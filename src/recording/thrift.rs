@@ -145,7 +145,10 @@ impl Walk<'_> {
 mod tests {
     use super::*;
 
-    fn walked(bytes: &[u8]) -> Option<(usize, Vec<(Vec<i16>, Seen)>)> {
+    /// A field's path, and what it is.
+    type Field = (Vec<i16>, Seen);
+
+    fn walked(bytes: &[u8]) -> Option<(usize, Vec<Field>)> {
         let mut seen = Vec::new();
         let length = walk(bytes, |path, own| seen.push((path.to_vec(), own)))?;
         Some((length, seen))
@@ -171,7 +174,7 @@ mod tests {
             walked(&[0x19, 0xfc, 0xff, 0xff, 0xff, 0xff, 0x07, 0x00]),
             None
         );
-        assert_eq!(walked(&[0x1c; 100_000]), None);
-        assert_eq!(walked(&[0x19; 100_000]), None);
+        assert_eq!(walked(&vec![0x1c; 100_000]), None);
+        assert_eq!(walked(&vec![0x19; 100_000]), None);
     }
 }

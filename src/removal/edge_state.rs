@@ -248,4 +248,36 @@ mod tests {
         let ride = state.ride(0.05, 5e-3);
         assert!(ride.lift > -3e-6, "{}", ride.lift);
     }
+
+    #[test]
+    fn stations_stand_in_the_middle_of_equal_stretches() {
+        let state = EdgeState::new(&edge(), None, 1e-4);
+        let count = state.stations().len();
+        assert!((state.spacing() * count as f64 - 0.1).abs() < 1e-12);
+        assert!((state.place(0) - 0.5 * state.spacing()).abs() < 1e-15);
+        assert!((state.place(count - 1) + 0.5 * state.spacing() - 0.1).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_ball_rides_on_the_highest_of_the_circles_about_it() {
+        let mut state = EdgeState::new(&edge(), None, 1e-4);
+        // A notch, and a ball that is far wider: by brute force over fine places.
+        state.remove(0.049, 0.0505, 2e-10);
+        let radius = 5e-3;
+        let height = |place: f64| {
+            let at = place / state.spacing() - 0.5;
+            let left = at.floor();
+            let of = |i: f64| state.heights[(i.max(0.0) as usize).min(state.heights.len() - 1)];
+            of(left) + (at - left) * (of(left + 1.0) - of(left))
+        };
+        for place in [0.02, 0.046, 0.0483, 0.0495, 0.0499, 0.0512, 0.053] {
+            let circle =
+                |off: f64| height(place + off) + (radius * radius - off * off).sqrt() - radius;
+            let lift = (-4999..=4999)
+                .map(|i| circle(f64::from(i) * 1e-6))
+                .fold(f64::NEG_INFINITY, f64::max);
+            let found = state.ride(place, radius).lift;
+            assert!((found - lift).abs() < 2e-8, "{place}: {found} for {lift}");
+        }
+    }
 }

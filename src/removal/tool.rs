@@ -149,4 +149,23 @@ mod tests {
         });
         assert_eq!(belt.contact_radius(DVec3::X, DVec3::Z), 0.015);
     }
+
+    #[test]
+    fn a_spindle_leads_and_leans_by_its_angles() {
+        let (normal, travel) = (DVec3::Z, DVec3::X);
+        let left = normal.cross(travel);
+        let leaning = TurningTool {
+            lead: 0.03,
+            lean: -0.04,
+            ..tool(ToolShape::Ball { radius: 5e-3 })
+        };
+        let axis = leaning.spindle_axis(-normal, normal, travel);
+        assert!((axis.length() - 1.0).abs() < 1e-12);
+        assert!((axis.angle_between(-normal) - 0.05).abs() < 1e-9);
+        let ratio = axis.dot(left) / axis.dot(travel);
+        assert!(
+            (ratio + 4.0 / 3.0).abs() < 1e-9 && axis.dot(travel) > 0.0,
+            "{axis}"
+        );
+    }
 }

@@ -64,7 +64,7 @@ impl Made {
     /// That of a plan, as far as it can be read; none where there is none.
     #[must_use]
     pub fn of(plan: &Path) -> Option<Self> {
-        let lines = BufReader::new(File::open(plan).ok()?).lines();
+        let lines = BufReader::new(crate::file::open(plan).ok()?).lines();
         let mut lines = lines.map_while(Result::ok);
         let head: Head = serde_json::from_str(&lines.next()?).ok()?;
         let own = lines.filter_map(|line| Some(serde_json::from_str::<Task>(&line).ok()?.files));

@@ -227,13 +227,13 @@ mod tests {
                 std::fs::copy(store.folder("b").join(RESULT), &result).unwrap();
             }),
             ("without a seal", &|| {
-                std::fs::write(&result, "{\"code\":0,\"metrics\":[]}").unwrap()
+                std::fs::write(&result, "{\"code\":0,\"metrics\":[]}").unwrap();
             }),
             ("without its file", &|| {
-                std::fs::remove_file(&model).unwrap()
+                std::fs::remove_file(&model).unwrap();
             }),
             ("without a result", &|| {
-                std::fs::remove_file(&result).unwrap()
+                std::fs::remove_file(&result).unwrap();
             }),
             ("a file in its place", &|| {
                 std::fs::remove_dir_all(store.folder("a")).unwrap();

@@ -54,7 +54,7 @@ impl Unit {
     /// A range in this unit, for people.
     pub fn show_range(self, range: RangeInclusive<f64>) -> String {
         if range.end().is_finite() {
-            format!("{} to {}", range.start(), self.show(*range.end()))
+            format!("{} to {}", digits(*range.start()), self.show(*range.end()))
         } else {
             format!("at least {}", self.show(*range.start()))
         }
@@ -63,10 +63,18 @@ impl Unit {
     /// The value with its symbol.
     pub fn show(self, value: f64) -> String {
         if self.is_one() {
-            value.to_string()
+            digits(value)
         } else {
-            format!("{value} {}", self.symbol)
+            format!("{} {}", digits(value), self.symbol)
         }
+    }
+}
+
+/// The digits of a number, but for one of hundreds of them.
+fn digits(value: f64) -> String {
+    match value.abs() {
+        size if size >= 1e15 || (0.0 < size && size < 1e-9) => format!("{value:e}"),
+        _ => value.to_string(),
     }
 }
 
@@ -107,6 +115,16 @@ mod tests {
     use std::f64::consts::PI;
 
     use super::*;
+
+    #[test]
+    fn a_number_of_hundreds_of_digits_is_shown_by_its_power() {
+        let unit = Unit::of_key("force_n");
+        assert_eq!(unit.show(1e300), "1e300 N");
+        assert_eq!(unit.show(-2.5e-300), "-2.5e-300 N");
+        assert_eq!(unit.show(0.0001), "0.0001 N");
+        assert_eq!(unit.show(250_000_000.0), "250000000 N");
+        assert_eq!(unit.show_range(0.0..=1e-12), "0 to 1e-12 N");
+    }
 
     #[test]
     fn the_suffix_says_the_unit_and_the_number_is_the_si_literal() {

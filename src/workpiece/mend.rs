@@ -22,6 +22,9 @@ const JOINTS: [f64; 4] = [1e-6, 1e-5, 1e-4, 5e-4];
 /// Most of the volume that mending may leave open [1].
 const OPEN_VOLUME: f64 = 1e-3;
 
+/// Most cells and vertices that are looked at to join borders: some seconds.
+const MOST_WORK: usize = 10_000_000;
+
 /// What was mended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Flaw {
@@ -132,6 +135,8 @@ pub(super) struct Surface {
     mended: Vec<Mended>,
     /// Bound on the volume that mending leaves open [m^3].
     open_volume: f64,
+    /// Cells and vertices that were looked at to join borders.
+    work: usize,
 }
 
 impl Surface {
@@ -211,20 +216,28 @@ pub(super) fn mended(connected: &Connected) -> (Vec<DVec3>, Vec<[u32; 3]>, Vec<M
         triangles: triangles.clone(),
         mended: Vec::new(),
         open_volume: 0.0,
+        work: 0,
     };
     surface.record(Flaw::Needle, connected.needles.iter().copied());
     let size = extent(vertices);
     if !surface.is_closed() || surface.has_needles(size) {
+        surface.take_out_copies();
         surface.take_out_twice();
         surface.take_out_needles(size);
         surface.join_all(size);
+        if surface.is_beyond_mending() {
+            return as_it_was();
+        }
         surface.take_out_fins();
         surface.join_all(size);
         surface.turn();
         surface.separate_touching();
         surface.turn();
         surface.close_holes(size);
-        if !surface.is_closed() || surface.open_volume > OPEN_VOLUME * surface.volume().abs() {
+        if surface.is_beyond_mending()
+            || !surface.is_closed()
+            || surface.open_volume > OPEN_VOLUME * surface.volume().abs()
+        {
             return as_it_was();
         }
     }
@@ -242,10 +255,15 @@ pub(super) fn mended(connected: &Connected) -> (Vec<DVec3>, Vec<[u32; 3]>, Vec<M
 }
 
 impl Surface {
+    /// Whether there is so much border that its flaws are not small ones.
+    fn is_beyond_mending(&self) -> bool {
+        self.work > MOST_WORK
+    }
+
     /// Joins borders, as far apart as each tolerance allows, until there are none.
     fn join_all(&mut self, size: f64) {
         for share in JOINTS {
-            if Sides::new(&self.triangles).open().next().is_none() {
+            if self.is_beyond_mending() || Sides::new(&self.triangles).open().next().is_none() {
                 return;
             }
             self.join_vertices(share * size);

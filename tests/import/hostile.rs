@@ -250,6 +250,30 @@ fn packed_logs_that_unpack_without_end_are_refused() {
     }
 }
 
+#[test]
+fn a_text_of_more_rows_than_can_be_held_is_refused_with_the_key_that_takes_them() {
+    let folder = Folder::new();
+    folder.write("log.csv", "F\n".to_owned() + &"1\n".repeat(20_000));
+    let force = channel("force", "\"F\"", "N");
+    let map = |largest: u64| {
+        let keys = "form = \"text\"\nnames_line = 1\nsample_rate_hz = 100\n";
+        folder.map(
+            "map.toml",
+            &format!("{keys}largest_mb = {largest}\n{force}"),
+        );
+    };
+    map(1);
+    let says = ["more than 15625 rows", "`largest_mb`", "--largest-mb"];
+    refused(&folder, &["log.csv"], &says);
+    map(2);
+    let outcome = folder.run(&["import", "map.toml", "log.csv"]);
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    let draft = ["new", "import", "--from", "log.csv", "draft.toml"];
+    let outcome = folder.run(&[&draft[..], &["--largest-mb", "1"]].concat());
+    assert_eq!(outcome.code, 2, "{}", outcome.err);
+    assert!(outcome.only_line("error: ").contains("15625 rows"));
+}
+
 #[cfg(unix)]
 #[test]
 fn what_is_no_file_is_neither_waited_for_nor_read() {

@@ -21,10 +21,16 @@ const ROWS: usize = 8;
 /// Its start, in seconds since 1970 [s].
 const START: u64 = 1_714_740_000;
 
+fn is_toml(name: &str) -> bool {
+    std::path::Path::new(name)
+        .extension()
+        .is_some_and(|end| end == "toml")
+}
+
 /// Files of a door's kind.
 pub fn seeds(door: &str) -> Vec<Vec<u8>> {
     match door {
-        "scenario" => own("scenarios", |name| name.ends_with(".toml")),
+        "scenario" => own("scenarios", is_toml),
         "device" => own("models", |name| name == "device.toml"),
         "rig" => [
             own("assets/rigs", |_| true),
@@ -40,7 +46,7 @@ pub fn seeds(door: &str) -> Vec<Vec<u8>> {
         "postures" => own("assets/new", |name| name == "postures.toml"),
         "removal_table" => own("assets/new", |name| name == "removal_table.toml"),
         "import_map" => [
-            own("assets/import", |name| name.ends_with(".toml")),
+            own("assets/import", is_toml),
             own("assets/new", |name| name == "import.toml"),
         ]
         .concat(),

@@ -49,7 +49,7 @@ struct Limits {
 const LIMITS: Limits = Limits {
     connections: 64,
     head: Duration::from_secs(15),
-    unread: Duration::from_secs(60),
+    unread: Duration::from_mins(1),
 };
 /// Memory for what is read, and for what is written beside shared content, of a connection [byte].
 const BUFFER: usize = 1 << 16;

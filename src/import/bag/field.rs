@@ -1,10 +1,14 @@
 //! Fields of ROS 2 messages by their path, and their values in a message as CDR writes it.
 
+use std::collections::HashMap;
+
 use re_cdr::{BigEndian, CdrReader, LittleEndian};
 use re_ros_msg::MessageSchema;
 use re_ros_msg::deserialize::primitive_array::PrimitiveArray;
-use re_ros_msg::deserialize::{MapResolver, TypeResolver, Value, decode_message};
-use re_ros_msg::message_spec::{ArraySize, BuiltInType, MessageSpecification, Type};
+use re_ros_msg::deserialize::{TypeResolver, Value, decode_message};
+use re_ros_msg::message_spec::{
+    ArraySize, BuiltInType, ComplexType, MessageSpecification, Type, message_package,
+};
 
 use super::extent::{extent, measure};
 use crate::file::guarded;
@@ -21,6 +25,8 @@ const LONG: usize = 1 << 20;
 /// Definition of a topic's messages.
 pub(super) struct Definition {
     schema: MessageSchema,
+    /// Places of the messages that it takes from elsewhere, by name.
+    places: HashMap<String, usize>,
     /// Whether its messages hold lists of messages.
     has_lists: bool,
 }
@@ -75,6 +81,25 @@ const JOINT_NAMES: [&str; 2] = ["name", "joint_names"];
 /// A message, read.
 pub(super) struct Message(Value);
 
+impl TypeResolver for Definition {
+    fn resolve(
+        &self,
+        scope: &MessageSpecification,
+        kind: &ComplexType,
+    ) -> Option<&MessageSpecification> {
+        let package = match kind {
+            ComplexType::Absolute { package, .. } => Some(package.as_str()),
+            ComplexType::Relative { .. } => message_package(&scope.name),
+        };
+        let (ComplexType::Absolute { name, .. } | ComplexType::Relative { name }) = kind;
+        let place = match package {
+            Some(package) => self.places.get(&format!("{package}/{name}")),
+            None => self.places.get(name),
+        };
+        place.map(|place| &self.schema.dependencies[*place])
+    }
+}
+
 impl Definition {
     /// Whether its messages name joints, beside lists with an element for each.
     pub fn has_joints(&self) -> bool {
@@ -105,26 +130,25 @@ impl Definition {
     pub fn parse(name: &str, text: &str) -> Result<Self, String> {
         let parsed = guarded(|| MessageSchema::parse(name, text))?;
         let schema = parsed.map_err(|cause| format!("{cause:#}"))?;
-        let mut definition = Self {
-            schema,
-            has_lists: false,
-        };
-        let extent = extent(&definition.schema.spec, &definition.resolver())?;
-        definition.has_lists = extent.has_lists;
-        Ok(definition)
-    }
-
-    fn resolver(&self) -> MapResolver<'_> {
         // Some writers name a message `package/msg/Name`, where others leave out the middle.
         let short = |spec: &MessageSpecification| spec.name.replace("/msg/", "/");
-        let all = self.schema.dependencies.iter();
-        MapResolver::new(all.flat_map(|spec| [(spec.name.clone(), spec), (short(spec), spec)]))
+        let all = schema.dependencies.iter().enumerate();
+        let places = all
+            .flat_map(|(place, spec)| [(spec.name.clone(), place), (short(spec), place)])
+            .collect();
+        let mut definition = Self {
+            schema,
+            places,
+            has_lists: false,
+        };
+        let extent = extent(&definition.schema.spec, &definition)?;
+        definition.has_lists = extent.has_lists;
+        Ok(definition)
     }
 
     /// The field of a path, and what it holds.
     pub fn field(&self, path: &str) -> Option<(Field, Kind)> {
         let steps = steps(path)?;
-        let resolver = self.resolver();
         let mut scope = &self.schema.spec;
         let mut inside: Option<&Type> = None;
         for step in &steps {
@@ -139,7 +163,7 @@ impl Definition {
                     inside = Some(ty);
                 }
                 (Step::Name(name), Some(Type::Complex(kind))) => {
-                    scope = resolver.resolve(scope, kind)?;
+                    scope = self.resolve(scope, kind)?;
                     inside = Some(&scope.fields.iter().find(|f| f.name == *name)?.ty);
                 }
                 _ => return None,
@@ -148,7 +172,7 @@ impl Definition {
         let kind = match inside? {
             Type::BuiltIn(own) => of_built_in(own),
             Type::Array { .. } => Kind::Other("a list"),
-            Type::Complex(kind) => of_message(resolver.resolve(scope, kind)?),
+            Type::Complex(kind) => of_message(self.resolve(scope, kind)?),
         };
         Some((Field(steps), kind))
     }
@@ -165,11 +189,10 @@ impl Definition {
 
     /// Paths of a kind, of lists of unknown length the first elements.
     fn paths(&self, kind: Kind) -> Vec<String> {
-        let resolver = self.resolver();
         let mut found = Vec::new();
         for field in &self.schema.spec.fields {
             let start = field.name.clone();
-            walk(&resolver, &self.schema.spec, &field.ty, start, &mut found);
+            walk(self, &self.schema.spec, &field.ty, start, &mut found);
         }
         let own = found.into_iter().filter(|(_, own)| *own == kind);
         own.map(|(path, _)| path).collect()
@@ -179,21 +202,21 @@ impl Definition {
     pub fn decode(&self, data: &[u8]) -> Result<Message, String> {
         // The encapsulation header of CDR (OMG DDS-RTPS 2.5, 10.2): its second byte says the byte order.
         let body = data.get(4..).ok_or("it has no header")?;
-        let (spec, resolver) = (&self.schema.spec, self.resolver());
+        let spec = &self.schema.spec;
         // Room for a list is made as its length claims.
         let is_measured = self.has_lists || body.len() > LONG;
         let value = match data[..2] {
             [0, 0] => {
-                measure(&mut CdrReader::<BigEndian>::new(body), spec, &resolver)?;
+                measure(&mut CdrReader::<BigEndian>::new(body), spec, self)?;
                 let mut reader = CdrReader::<BigEndian>::new(body);
-                guarded(|| decode_message(&mut reader, spec, &resolver))?
+                guarded(|| decode_message(&mut reader, spec, self))?
             }
             [0, 1] => {
                 if is_measured {
-                    measure(&mut CdrReader::<LittleEndian>::new(body), spec, &resolver)?;
+                    measure(&mut CdrReader::<LittleEndian>::new(body), spec, self)?;
                 }
                 let mut reader = CdrReader::<LittleEndian>::new(body);
-                guarded(|| decode_message(&mut reader, spec, &resolver))?
+                guarded(|| decode_message(&mut reader, spec, self))?
             }
             _ => {
                 return Err(format!(
@@ -207,7 +230,7 @@ impl Definition {
 }
 
 fn walk(
-    resolver: &MapResolver<'_>,
+    resolver: &Definition,
     scope: &MessageSpecification,
     ty: &Type,
     path: String,

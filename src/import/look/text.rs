@@ -46,7 +46,8 @@ pub(super) fn look_at(
             NoTable::NoBeginning => "none of its first 2000 lines begins a table of numbers",
         })
     })?;
-    let mut sheet = Sheet::of(text, table.first, &table.separator).map_err(|cause| fail(&cause))?;
+    let mut sheet = Sheet::of(text, table.first, &table.separator, Limit::default())
+        .map_err(|cause| fail(&cause))?;
     let header: Vec<Vec<String>> = (sheet.header.iter())
         .map(|line| fields(line, &table.separator))
         .collect();

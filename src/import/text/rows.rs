@@ -68,7 +68,7 @@ pub(in crate::import) fn read_content(
         file: path.to_owned(),
         cause,
     };
-    let sheet = Sheet::of(text, form.header_lines, &form.separator).map_err(fail)?;
+    let sheet = Sheet::of(text, form.header_lines, &form.separator, map.limit).map_err(fail)?;
     if sheet.rows.is_empty() {
         return Err(fail(format!(
             "no rows after {} header lines",

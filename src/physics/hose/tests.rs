@@ -137,3 +137,37 @@ fn the_balance_holds_from_standstill_to_a_base_far_off() {
         assert!(tube.balance(3e5, 2e5, (1e-6, -4e6), on) > 0.0);
     }
 }
+
+#[test]
+fn the_slope_of_what_is_drawn_is_that_of_a_balance_that_follows() {
+    let rigid = Hose {
+        law: LineLaw::Constant {
+            resistance: 3e7,
+            segments: 1,
+            last: 1.0,
+        },
+        ..Hose::tube(1.0, 0.004, &Gas::default())
+    };
+    for line in [Hose::tube(1.0, 0.004, &Gas::default()), rigid] {
+        for (before, within) in [(5e5, 4.6e5), (4.6e5, 5e5), (3e5, 2.99e5)] {
+            let onward = 2e-8;
+            // What goes on and is stored, through the flow at these pressures.
+            let rest = line.mass_flow(before, within) - onward * within;
+            let balanced = |before: f64| {
+                let (mut low, mut high) = (1e5, 9e5);
+                for _ in 0..200 {
+                    let p = 0.5 * (low + high);
+                    match line.mass_flow(before, p) > rest + onward * p {
+                        true => low = p,
+                        false => high = p,
+                    }
+                }
+                line.mass_flow(before, 0.5 * (low + high))
+            };
+            let drawn = line.drawn(before, within, onward);
+            assert_eq!(drawn.flow, line.mass_flow(before, within));
+            let slope = (balanced(before + 10.0) - balanced(before - 10.0)) / 20.0;
+            near(drawn.slope, slope, 1e-4);
+        }
+    }
+}

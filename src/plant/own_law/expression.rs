@@ -684,6 +684,29 @@ mod tests {
     }
 
     #[test]
+    fn a_refusal_points_at_whole_letters() {
+        for text in [
+            "ü-1e308ü-1e308",
+            "x ü",
+            "ü",
+            "x * ü(2)",
+            "(ü",
+            "2ü3",
+            "x-ü-1e3ü",
+            "é^-é",
+            "-ü",
+            "x + 1 é",
+        ] {
+            let error = Expression::read(text, &NAMES).unwrap_err();
+            assert!(
+                text.get(error.span.clone()).is_some(),
+                "{text}: {:?}, {error}",
+                error.span
+            );
+        }
+    }
+
+    #[test]
     fn very_long_and_very_deep_texts_are_refused_and_what_is_read_is_evaluated() {
         let refusal = |text: &str| Expression::read(text, &NAMES).unwrap_err().reason;
         let deep = |open: &str, count: usize, close: &str| {

@@ -280,7 +280,7 @@ fn what_cannot_be_is_refused_by_its_key() {
         (
             "low = 20.0, high = 60.0",
             "low = 20.0, high = 1e300",
-            "`high",
+            ".high` is 1e300, expected -1000000 to 1100000 N m",
         ),
         (
             "value = 10.0, tolerance = 0.1",

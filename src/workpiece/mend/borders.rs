@@ -37,8 +37,8 @@ impl Grid {
             .map(|value| value as i64)
     }
 
-    /// Vertices in the cells of a box, in order.
-    fn within(&self, low: DVec3, high: DVec3) -> Vec<u32> {
+    /// Vertices in the cells of a box, in order; adds the cells and vertices looked at to `work`.
+    fn within(&self, low: DVec3, high: DVec3, work: &mut usize) -> Vec<u32> {
         let (low, high) = (self.key(low), self.key(high));
         let cells = (0..3)
             .map(|axis| (high[axis] - low[axis] + 1) as f64)
@@ -60,6 +60,7 @@ impl Grid {
             }
             found
         };
+        *work += found.len() + (self.vertices.len() as f64).min(cells) as usize;
         found.sort_unstable();
         found
     }
@@ -75,13 +76,8 @@ impl Surface {
         (open, vertices)
     }
 
-    /// Makes one of vertices of the border that lie within a tolerance [m], and nearer to each other than to anything else.
-    pub(super) fn join_vertices(&mut self, tolerance: f64) {
-        let (_, border) = self.border();
-        if border.is_empty() {
-            return;
-        }
-        // Of each vertex of the border its shortest side, and the number of its triangles.
+    /// Of each vertex of the border its shortest side [m], and the number of its triangles.
+    fn shortest_sides(&self, border: &BTreeSet<u32>) -> BTreeMap<u32, (f64, usize)> {
         let mut shortest: BTreeMap<u32, (f64, usize)> =
             border.iter().map(|&v| (v, (f64::INFINITY, 0))).collect();
         for triangle in &self.triangles {
@@ -97,11 +93,25 @@ impl Surface {
                 }
             }
         }
+        shortest
+    }
+
+    /// Makes one of vertices of the border that lie within a tolerance [m], and nearer to each other than to anything else.
+    pub(super) fn join_vertices(&mut self, tolerance: f64) {
+        let (_, border) = self.border();
+        if border.is_empty() {
+            return;
+        }
+        let shortest = self.shortest_sides(&border);
         let grid = Grid::new(self, &border, 2.0 * tolerance);
         let mut pairs: Vec<(f64, u32, u32)> = Vec::new();
         for &vertex in &border {
             let at = self.at(vertex);
-            for other in grid.within(at - tolerance, at + tolerance) {
+            let near = grid.within(at - tolerance, at + tolerance, &mut self.work);
+            if self.is_beyond_mending() {
+                return;
+            }
+            for other in near {
                 let distance = at.distance(self.at(other));
                 let reach = BESIDE * shortest[&vertex].0.min(shortest[&other].0);
                 if other > vertex && distance <= tolerance.min(reach) {
@@ -115,6 +125,7 @@ impl Surface {
                 .then((one.1, one.2).cmp(&(other.1, other.2)))
         });
         let mut is_equivalent: BTreeMap<u32, u32> = BTreeMap::new();
+        let mut stays = BTreeSet::new();
         let mut moved = Vec::new();
         for (distance, one, other) in pairs {
             if is_equivalent.contains_key(&one) || is_equivalent.contains_key(&other) {
@@ -126,15 +137,24 @@ impl Surface {
             } else {
                 (other, one)
             };
-            if is_equivalent.values().any(|kept| *kept == gone) {
+            if stays.contains(&gone) {
                 continue;
             }
             is_equivalent.insert(gone, keep);
+            stays.insert(keep);
             moved.push((gone, distance));
         }
+        // Area of the triangles about each that goes [m^2].
+        let mut around: BTreeMap<u32, f64> = moved.iter().map(|(gone, _)| (*gone, 0.0)).collect();
+        for (triangle, corners) in self.triangles.iter().enumerate() {
+            for corner in corners {
+                if let Some(area) = around.get_mut(corner) {
+                    *area += self.area(triangle);
+                }
+            }
+        }
         for (gone, distance) in &moved {
-            let around = (0..self.triangles.len()).filter(|&t| self.triangles[t].contains(gone));
-            self.open_volume += around.map(|t| self.area(t)).sum::<f64>() * distance / 3.0;
+            self.open_volume += around[gone] * distance / 3.0;
         }
         let places: Vec<DVec3> = moved.iter().map(|(gone, _)| self.at(*gone)).collect();
         for triangle in &mut self.triangles {
@@ -170,7 +190,11 @@ impl Surface {
             let [start, end] = [from, to].map(|vertex| self.at(vertex));
             let along = end - start;
             let length = along.length();
-            let near = grid.within(start.min(end) - tolerance, start.max(end) + tolerance);
+            let box_of = [start.min(end) - tolerance, start.max(end) + tolerance];
+            let near = grid.within(box_of[0], box_of[1], &mut self.work);
+            if self.is_beyond_mending() {
+                return;
+            }
             let mut on: Vec<(f64, u32)> = Vec::new();
             for vertex in near
                 .into_iter()

@@ -39,6 +39,42 @@ impl Surface {
         self.without(out);
     }
 
+    /// A body that the file holds several times, whichever way it is wound: one stays.
+    pub(super) fn take_out_copies(&mut self) {
+        let key = |triangle: &[u32; 3]| {
+            let mut key = *triangle;
+            key.sort_unstable();
+            key
+        };
+        let mut first: BTreeMap<[u32; 3], usize> = BTreeMap::new();
+        for (index, triangle) in self.triangles.iter().enumerate() {
+            first.entry(key(triangle)).or_insert(index);
+        }
+        if first.len() == self.triangles.len() {
+            return;
+        }
+        let mut single: Vec<usize> = first.values().copied().collect();
+        single.sort_unstable();
+        let triangles: Vec<[u32; 3]> = single.iter().map(|index| self.triangles[*index]).collect();
+        let sides = Sides::new(&triangles);
+        let (run_of, count) = sides.runs();
+        let mut closed = vec![true; count];
+        for side in sides.all().filter(|side| side.half_edges.len() != 2) {
+            for half_edge in side.half_edges {
+                closed[run_of[half_edge as usize / 3]] = false;
+            }
+        }
+        // Of closed bodies the triangles that stay.
+        let kept: BTreeMap<[u32; 3], usize> = (single.iter().zip(&triangles).zip(run_of))
+            .filter(|(_, run)| closed[*run])
+            .map(|((index, triangle), _)| (key(triangle), *index))
+            .collect();
+        let out: Vec<bool> = (self.triangles.iter().enumerate())
+            .map(|(index, triangle)| kept.get(&key(triangle)).is_some_and(|kept| *kept != index))
+            .collect();
+        self.take_out(Flaw::Twice, &out);
+    }
+
     /// Of triangles with the same corners one stays where that closes the surface to its neighbours, else none.
     pub(super) fn take_out_twice(&mut self) {
         let mut same: BTreeMap<[u32; 3], Vec<usize>> = BTreeMap::new();

@@ -1,3 +1,6 @@
+use rand::{Rng, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
 use super::*;
 use crate::workpiece::mesh::shapes::gridded_box;
 use crate::workpiece::{EdgeFlaw, MeshFault, TriangleMesh};
@@ -196,4 +199,52 @@ fn a_missing_side_is_refused_with_its_places() {
         message.contains("16 open edges") && message.contains(", 40) mm and 13 more"),
         "{message}"
     );
+}
+
+#[test]
+fn of_a_body_that_is_held_several_times_one_stays() {
+    let (points, triangles) = part();
+    let back: Vec<[u32; 3]> = triangles.iter().map(|[a, b, c]| [*c, *b, *a]).collect();
+    let again = |copies: &[&[[u32; 3]]]| copies.concat();
+    for (copies, twice) in [
+        (again(&[&triangles, &triangles]), 1),
+        (again(&[&triangles, &triangles, &triangles]), 2),
+        (again(&[&triangles, &back]), 1),
+        (again(&[&triangles, &triangles[..40]]), 0),
+    ] {
+        let mesh = TriangleMesh::from_loose_triangles(&points, &copies, 1.0).unwrap();
+        assert!((mesh.volume() / VOLUME - 1.0).abs() < 1e-9);
+        let count = copies.len() - triangles.len();
+        assert!(twice == 0 || count == twice * triangles.len());
+        let found: Vec<(Flaw, usize)> = mesh
+            .mended()
+            .iter()
+            .map(|m| (m.flaw, m.places.len()))
+            .collect();
+        assert_eq!(found, [(Flaw::Twice, count)]);
+    }
+    // Wound inwards, and first.
+    let mesh =
+        TriangleMesh::from_loose_triangles(&points, &again(&[&back, &triangles]), 1.0).unwrap();
+    assert!((mesh.volume() / VOLUME - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_heap_of_loose_triangles_is_given_up_before_each_is_held_against_each() {
+    let mut chance = ChaCha8Rng::seed_from_u64(1);
+    let points: Vec<DVec3> = (0..60_000)
+        .map(|_| 0.1 * DVec3::from_array(chance.random()))
+        .collect();
+    let triangles: Vec<[u32; 3]> = (0..20_000).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
+    let mut surface = Surface {
+        vertices: points.clone(),
+        triangles: triangles.clone(),
+        mended: Vec::new(),
+        open_volume: 0.0,
+        work: 0,
+    };
+    surface.join_all(extent(&points));
+    assert!(surface.is_beyond_mending() && surface.work < MOST_WORK + 2 * points.len());
+    let fault = TriangleMesh::from_loose_triangles(&points, &triangles, 1.0).unwrap_err();
+    assert!(matches!(fault, MeshFault::NotClosed { .. }), "{fault}");
 }
