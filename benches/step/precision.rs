@@ -47,10 +47,13 @@ struct Point {
     held: f64,
 }
 
-/// The cell of a scenario at a step [s].
-fn cell_at(name: &str, step: f64) -> Result<Cell, Box<dyn Error>> {
+/// The cell of a scenario at a step [s], of which at most so many pass for one of Rapier's.
+fn cell_at(name: &str, step: f64, arm_steps: Option<usize>) -> Result<Cell, Box<dyn Error>> {
     let mut scenario = job::scenario(name)?;
     scenario.simulation.step = step;
+    if let Some(arm_steps) = arm_steps {
+        scenario.simulation.arm_steps = arm_steps;
+    }
     Ok(Cell::new(scenario)?)
 }
 
@@ -113,12 +116,14 @@ fn errors(one: &(Vec<Vec<f64>>, Vec<DVec3>), other: &(Vec<Vec<f64>>, Vec<DVec3>)
 
 /// Draws error over cost of a scenario's cell and of MuJoCo.
 pub fn compare(name: &str) -> Result<(), Box<dyn Error>> {
-    let finest = cell_at(name, FINEST)?;
+    let finest = cell_at(name, FINEST, None)?;
     let (recording, _) = run(&finest)?;
     let truth = course(&finest, &recording);
     let mut ours = Vec::new();
-    for step in STEPS {
-        let cell = cell_at(name, step)?;
+    let several = STEPS.map(|step| ("cell", step, None));
+    let each = STEPS.map(|step| ("cell, Rapier each step", step, Some(1)));
+    for (kind, step, arm_steps) in several.into_iter().chain(each) {
+        let cell = cell_at(name, step, arm_steps)?;
         let (recording, held) = run(&cell)?;
         let course = course(&cell, &recording);
         let mut following = Following::new(&cell);
@@ -127,7 +132,7 @@ pub fn compare(name: &str) -> Result<(), Box<dyn Error>> {
             .map(|_| per_step_of(following.run(steps, None), steps) / step)
             .collect();
         ours.push(Point {
-            name: "cell".to_owned(),
+            name: kind.to_owned(),
             step,
             cost: median(&mut costs),
             error: errors(&course, &truth),
@@ -211,10 +216,11 @@ fn at_equal_error(usual: &Point, theirs: &[Point]) {
         }
         match best {
             Some((cost, peer)) => println!(
-                "at the cell's error of {name} at {} ms, {wanted:.3e}: cell {:.0} us, {peer} {cost:.0} us a simulated second, ratio {:.2}",
+                "at the cell's error of {name} at {} ms, {wanted:.3e}: cell {:.0} us, {peer} {:.0} us a simulated second, {:.2} times the cell's",
                 usual.step * 1e3,
                 usual.cost * 1e6,
-                usual.cost / cost
+                cost * 1e6,
+                cost / usual.cost
             ),
             None => println!("no step of MuJoCo has so small an error of {name} as {wanted:.3e}"),
         }

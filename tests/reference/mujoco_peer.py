@@ -131,9 +131,9 @@ def precision(model: mujoco.MjModel, scene: dict, wanted: dict) -> list[dict]:
     found = []
     for name in ("EULER", "IMPLICITFAST", "RK4"):
         model.opt.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{name}")
-        angles, tips, _ = run(wanted["finest"], 0.5)
         # Inputs hold over a step: taken where in it they err least.
         for place, where in ((0.0, "start"), (0.5, "middle"), (1.0, "end")):
+            angles, tips, _ = run(wanted["finest"], place)
             for step in wanted["steps"]:
                 there, at, cost = run(step, place)
                 count, tip_count = min(len(there), len(angles)), min(len(at), len(tips))

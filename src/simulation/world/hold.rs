@@ -14,8 +14,8 @@ use crate::arm::chain::MAX_JOINTS;
 use crate::simulation::contact::ContactReading;
 use crate::simulation::held_arm::{Acting, Engine, Joints};
 
-/// Share of its speed that a tool which slides keeps at least along its direction over a step [1].
-const SLIDES_ON: f64 = 0.5;
+/// Change of a sliding tool's velocity over a step up to which it is taken to slide on, of that velocity [1].
+const SLIDES_ON: f64 = 0.2;
 /// Turn of that direction over a step from which on friction is taken anew by that in the middle [rad].
 const TURNS: f64 = 1e-5;
 
@@ -71,7 +71,7 @@ impl World {
     fn slides_on(&self, outside: &Outside) -> bool {
         outside.slips.iter().all(|(normal, slip)| {
             let end = self.slip(*normal, &self.velocities);
-            end.dot(*slip) > SLIDES_ON * slip.length_squared()
+            (end - *slip).length() < SLIDES_ON * slip.length()
         })
     }
 
