@@ -107,6 +107,8 @@ pub struct World {
     starts: Vec<f64>,
     positions: Vec<f64>,
     velocities: Vec<f64>,
+    /// What the last step added to them [rad/s or m/s].
+    gained: Joints,
     /// Positions at which Rapier's bodies stand [rad or m], and the ball there.
     seen: Vec<f64>,
     seen_lever: Lever,
@@ -219,6 +221,7 @@ impl World {
             starts: vec![0.0; count],
             positions: vec![0.0; count],
             velocities: vec![0.0; count],
+            gained: [0.0; MAX_JOINTS],
             seen: vec![0.0; count],
             seen_lever: Lever::new(DVec3::ZERO, DVec3::Z, []),
             lever: Lever::new(DVec3::ZERO, DVec3::Z, []),
@@ -268,6 +271,7 @@ impl World {
     pub fn set_positions(&mut self, positions: &[f64]) {
         self.positions.copy_from_slice(positions);
         self.velocities.fill(0.0);
+        self.gained = [0.0; MAX_JOINTS];
         self.tell_bodies();
         let physics = &mut self.physics;
         let (multibody, _) = physics
@@ -405,6 +409,9 @@ impl World {
             self.limit_drives();
         }
         self.pushed = (DVec3::ZERO, DVec3::ZERO);
+        for (i, gained) in self.gained.iter_mut().enumerate().take(self.joints.len()) {
+            *gained = self.velocities[i] - self.applied[i].1;
+        }
         self.end(slide);
     }
 

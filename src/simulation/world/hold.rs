@@ -14,9 +14,9 @@ use crate::arm::chain::MAX_JOINTS;
 use crate::simulation::contact::ContactReading;
 use crate::simulation::held_arm::{Acting, Engine, Joints};
 
-/// Change of a sliding tool's velocity over a step up to which it is taken to slide on, of that velocity [1].
-const SLIDES_ON: f64 = 0.2;
-/// Turn of that direction over a step from which on friction is taken anew by that in the middle [rad].
+/// Change of a sliding tool's velocity from the middle of a step to its ends up to which it is taken to slide on, of that velocity [1].
+const SLIDES_ON: f64 = 0.1;
+/// Error of that direction, as it was expected, from which on friction is taken anew [rad].
 const TURNS: f64 = 1e-5;
 
 /// What acts on the tool from outside over a step.
@@ -67,19 +67,42 @@ impl World {
         velocity - normal * velocity.dot(normal)
     }
 
+    /// Speeds of the joints in the middle of the step as the step before lets expect them [rad/s or m/s].
+    fn expected(&self) -> Joints {
+        let mut middle = [0.0; MAX_JOINTS];
+        for (i, middle) in middle.iter_mut().enumerate().take(self.joints.len()) {
+            *middle = self.velocities[i] + 0.5 * self.gained[i];
+        }
+        middle
+    }
+
+    /// Speeds of the joints in the middle of the step whose end they are at [rad/s or m/s].
+    fn middle(&self) -> Joints {
+        let mut middle = [0.0; MAX_JOINTS];
+        for (i, middle) in middle.iter_mut().enumerate().take(self.joints.len()) {
+            *middle = 0.5 * (self.applied[i].1 + self.velocities[i]);
+        }
+        middle
+    }
+
     /// Whether the tool slides on all through the step at whose end the joints' speeds are.
     fn slides_on(&self, outside: &Outside) -> bool {
+        let mut start = [0.0; MAX_JOINTS];
+        for (start, applied) in start.iter_mut().zip(&self.applied) {
+            *start = applied.1;
+        }
         outside.slips.iter().all(|(normal, slip)| {
-            let end = self.slip(*normal, &self.velocities);
-            (end - *slip).length() < SLIDES_ON * slip.length()
+            let near =
+                |speeds| (self.slip(*normal, speeds) - *slip).length() < SLIDES_ON * slip.length();
+            near(&start[..self.joints.len()]) && near(&self.velocities)
         })
     }
 
-    /// Whether the tool turns while it slides: friction is then not what it was at the start of the step.
-    fn slides_round(&self, outside: &Outside) -> bool {
+    /// Whether the tool slid otherwise in the middle of the step than was expected: friction is then another.
+    fn slides_otherwise(&self, outside: &Outside, middle: &[f64]) -> bool {
         outside.slips.iter().any(|(normal, slip)| {
-            let end = self.slip(*normal, &self.velocities);
-            slip.cross(end).length() > TURNS * slip.length_squared()
+            let found = self.slip(*normal, middle);
+            slip.cross(found).length() > TURNS * slip.length_squared()
         })
     }
 
@@ -89,21 +112,18 @@ impl World {
         if self.rates.every_step() {
             return Err(None);
         }
-        let Some(mut outside) = self.sliding(pressed, &self.velocities) else {
+        let count = self.joints.len();
+        let Some(mut outside) = self.sliding(pressed, &self.expected()[..count]) else {
             return Err(None);
         };
         if !self.forecast(&outside) {
             return Err(outside.slips.is_empty().then_some(outside));
         }
         let slides = self.slides_on(&outside);
-        if slides && self.slides_round(&outside) {
-            let mut middle = [0.0; MAX_JOINTS];
-            let middle = &mut middle[..self.joints.len()];
-            for (i, middle) in middle.iter_mut().enumerate() {
-                *middle = 0.5 * (self.velocities[i] + self.applied[i].1);
-            }
+        let middle = self.middle();
+        if slides && self.slides_otherwise(&outside, &middle[..count]) {
             self.take_back();
-            let Some(turned) = self.sliding(pressed, middle) else {
+            let Some(turned) = self.sliding(pressed, &middle[..count]) else {
                 return Err(None);
             };
             outside = turned;
