@@ -1,7 +1,5 @@
 //! View of triangles from one side: a shaded image with outlines, and how deep each of its pixels lies.
 
-use std::collections::VecDeque;
-
 use glam::{DVec2, DVec3};
 
 use super::faces::Face;
@@ -61,11 +59,15 @@ const FINE: usize = 2;
 const AMBIENT: f64 = 0.45;
 /// Surfaces whose normals part by more than this cosine are divided by a line.
 const CREASE: f64 = 0.8;
+/// Red, green and blue of such a line.
+const LINE: u8 = 45;
 
 /// An image with depth, finer than it is shown.
 pub(super) struct Raster<'a> {
     size: [usize; 2],
     camera: Camera,
+    /// Where light comes from.
+    light: DVec3,
     faces: &'a [Face],
     /// Where each face lies in the image; none of one that is seen edge on.
     seen: Vec<Option<Seen>>,
@@ -115,26 +117,6 @@ fn middle(column: usize, row: usize) -> DVec2 {
     DVec2::new(column as f64 + 0.5, row as f64 + 0.5)
 }
 
-/// What is seen at a sample.
-#[derive(Clone, Copy, Default)]
-struct Sample {
-    colour: [u8; 3],
-    normal: [f32; 3],
-    /// 0 where there is none.
-    body: u16,
-}
-
-impl Sample {
-    /// Whether a body, or a crease of one, ends between two samples.
-    fn parts(&self, other: &Self) -> bool {
-        if self.body != other.body {
-            return true;
-        }
-        let ([a, b, c], [d, e, f]) = (self.normal, other.normal);
-        self.body != 0 && f64::from(a * d + b * e + c * f) < CREASE
-    }
-}
-
 impl<'a> Raster<'a> {
     /// Triangles as a camera sees them, in a picture of this size [pixel].
     pub(super) fn of(faces: &'a [Face], camera: &Camera, size: [usize; 2]) -> Self {
@@ -143,6 +125,8 @@ impl<'a> Raster<'a> {
         let mut raster = Self {
             size: fine,
             camera: *camera,
+            // From above the eye's left shoulder.
+            light: (camera.eye - 0.35 * camera.right - 0.5 * camera.down).normalize(),
             faces,
             seen: faces.iter().map(|face| seen(face, camera)).collect(),
             depth: vec![f32::NEG_INFINITY; count],
@@ -193,57 +177,105 @@ impl<'a> Raster<'a> {
         f64::from(self.depth[row * self.size[0] + column])
     }
 
-    /// The samples of a row, shaded.
-    fn samples(&self, row: usize) -> Vec<Sample> {
-        let camera = &self.camera;
-        // Light from above the eye's left shoulder.
-        let light = (camera.eye - 0.35 * camera.right - 0.5 * camera.down).normalize();
-        let start = row * self.size[0];
-        let nearest = self.nearest[start..start + self.size[0]].iter().enumerate();
-        let sample = |(column, nearest): (usize, &u32)| {
-            let face = (*nearest as usize).checked_sub(1);
-            let Some((face, seen)) = face.and_then(|f| Some((&self.faces[f], self.seen[f]?)))
-            else {
-                return Sample::default();
-            };
-            let weights = seen.weights(middle(column, row));
-            let normal: DVec3 = (0..3).map(|i| weights[i] * face.normals[i]).sum();
-            let normal = normal.normalize_or(camera.eye);
-            let normal = if normal.dot(camera.eye) < 0.0 {
-                -normal
-            } else {
-                normal
-            };
-            let share = AMBIENT + (1.0 - AMBIENT) * normal.dot(light).max(0.0);
-            // Dark bodies keep their shape in either theme.
-            let shade =
-                |value: u8| ((0.25 * 150.0 + 0.75 * f64::from(value)) * share).min(255.0) as u8;
-            let [red, green, blue, _] = face.colour;
-            Sample {
-                colour: [red, green, blue].map(shade),
-                normal: normal.as_vec3().to_array(),
-                body: face.body,
-            }
+    /// The face that is seen at a sample, from 1; 0 where there is none.
+    fn face_at(&self, [column, row]: [usize; 2]) -> u32 {
+        self.nearest[row * self.size[0] + column]
+    }
+
+    /// Unit normal of a face at a place of the image, towards the eye.
+    fn normal(&self, face: u32, at: DVec2) -> DVec3 {
+        let (camera, index) = (&self.camera, face as usize - 1);
+        let Some(seen) = self.seen[index] else {
+            return camera.eye;
         };
-        nearest.map(sample).collect()
+        let (weights, normals) = (seen.weights(at), &self.faces[index].normals);
+        let normal: DVec3 = (0..3).map(|i| weights[i] * normals[i]).sum();
+        let normal = normal.normalize_or(camera.eye);
+        if normal.dot(camera.eye) < 0.0 {
+            -normal
+        } else {
+            normal
+        }
+    }
+
+    /// Colour of a face at a place of the image.
+    fn shade(&self, face: u32, at: DVec2) -> [u8; 3] {
+        let share = AMBIENT + (1.0 - AMBIENT) * self.normal(face, at).dot(self.light).max(0.0);
+        // Dark bodies keep their shape in either theme.
+        let shade = |value: u8| ((0.25 * 150.0 + 0.75 * f64::from(value)) * share).min(255.0) as u8;
+        let [red, green, blue, _] = self.faces[face as usize - 1].colour;
+        [red, green, blue].map(shade)
+    }
+
+    /// Whether a body, or a crease of one, ends between two samples; a face has none within.
+    fn parts(&self, one: [usize; 2], other: [usize; 2]) -> bool {
+        let faces = [one, other].map(|sample| self.face_at(sample));
+        if faces[0] == faces[1] {
+            return false;
+        }
+        let body = |face: u32| (face as usize).checked_sub(1).map(|f| self.faces[f].body);
+        if body(faces[0]) != body(faces[1]) {
+            return true;
+        }
+        let [a, b] = [(faces[0], one), (faces[1], other)]
+            .map(|(face, [column, row])| self.normal(face, middle(column, row)));
+        a.dot(b) < CREASE
     }
 
     /// Red, green, blue and opacity of the image, row by row.
     pub(super) fn pixels(&self) -> Vec<u8> {
         let [width, height] = self.size;
         let mut pixels = Vec::with_capacity(4 * width * height / (FINE * FINE));
-        // Those of a pixel, and the row below.
-        let mut rows: VecDeque<Vec<Sample>> = VecDeque::new();
         for row in (0..height).step_by(FINE) {
-            for next in row + rows.len()..(row + FINE + 1).min(height) {
-                rows.push_back(self.samples(next));
-            }
             for column in (0..width).step_by(FINE) {
-                pixels.extend(pixel(&rows, column));
+                pixels.extend(self.pixel(column, row));
             }
-            rows.drain(..FINE);
         }
         pixels
+    }
+
+    /// The pixel whose samples start at one. Where they and their neighbours see one face, it is shaded once.
+    fn pixel(&self, column: usize, row: usize) -> [u8; 4] {
+        let [width, height] = self.size;
+        let whole = |row: usize| {
+            let start = row * width;
+            &self.nearest[start + column..start + (column + FINE + 1).min(width)]
+        };
+        let face = self.face_at([column, row]);
+        let mut seen = (row..(row + FINE + 1).min(height)).flat_map(whole);
+        if !seen.all(|other| *other == face) {
+            return self.mixed_pixel(column, row);
+        }
+        if face == 0 {
+            return [0; 4];
+        }
+        let half = 0.5 * FINE as f64;
+        let [red, green, blue] = self.shade(face, DVec2::new(column as f64, row as f64) + half);
+        [red, green, blue, 255]
+    }
+
+    /// Mean of the samples of a pixel; lines divide bodies, and creases of one.
+    fn mixed_pixel(&self, column: usize, row: usize) -> [u8; 4] {
+        let [width, height] = self.size;
+        let mut sum = [0u32; 3];
+        let mut covered = 0;
+        for [column, row] in (0..FINE * FINE).map(|i| [column + i % FINE, row + i / FINE]) {
+            let right = (column + 1 < width).then_some([column + 1, row]);
+            let below = (row + 1 < height).then_some([column, row + 1]);
+            let mut beside = right.into_iter().chain(below);
+            let colour = match self.face_at([column, row]) {
+                _ if beside.any(|next| self.parts([column, row], next)) => [LINE; 3],
+                0 => continue,
+                face => self.shade(face, middle(column, row)),
+            };
+            covered += 1;
+            for (sum, value) in sum.iter_mut().zip(colour) {
+                *sum += u32::from(value);
+            }
+        }
+        let mean = |sum: u32| (sum / covered.max(1)) as u8;
+        let opacity = 255 * covered / (FINE * FINE) as u32;
+        [mean(sum[0]), mean(sum[1]), mean(sum[2]), opacity as u8]
     }
 }
 
@@ -258,32 +290,6 @@ fn seen(face: &Face, camera: &Camera) -> Option<Seen> {
         depths: seen.map(|(_, depth)| depth),
         area,
     })
-}
-
-/// Mean of the samples of a pixel that starts at a column; lines divide bodies, and creases of one.
-fn pixel(rows: &VecDeque<Vec<Sample>>, column: usize) -> [u8; 4] {
-    let mut sum = [0u32; 3];
-    let mut covered = 0;
-    for (down, on) in (0..FINE * FINE).map(|i| (i / FINE, i % FINE)) {
-        let column = column + on;
-        let own = &rows[down][column];
-        let right = rows[down].get(column + 1);
-        let below = rows.get(down + 1).map(|row| &row[column]);
-        let is_line = right.into_iter().chain(below).any(|next| own.parts(next));
-        if own.body == 0 && !is_line {
-            continue;
-        }
-        covered += 1;
-        for (sum, value) in sum.iter_mut().zip(own.colour) {
-            *sum += match is_line {
-                true => 45,
-                false => u32::from(value),
-            };
-        }
-    }
-    let mean = |sum: u32| (sum / covered.max(1)) as u8;
-    let opacity = 255 * covered / (FINE * FINE) as u32;
-    [mean(sum[0]), mean(sum[1]), mean(sum[2]), opacity as u8]
 }
 
 #[cfg(test)]
@@ -376,5 +382,39 @@ mod tests {
             }
         }
         assert!(covered > 3000, "{covered}");
+    }
+
+    #[test]
+    fn a_pixel_shaded_once_has_the_colour_of_its_samples() {
+        let mut chance = ChaCha8Rng::seed_from_u64(5);
+        let mut point = |size: f64| size * (2.0 * DVec3::from_array(chance.random()) - 1.0);
+        let faces: Vec<Face> = (0..60)
+            .map(|number| {
+                let centre = point(1.0);
+                Face {
+                    corners: [0; 3].map(|_| centre + point(0.5)),
+                    normals: [0; 3].map(|_| (DVec3::Z + point(0.4)).normalize()),
+                    colour: [90, 250, 10, 255],
+                    body: 1 + number % 2,
+                }
+            })
+            .collect();
+        let points = faces.iter().flat_map(|face| face.corners);
+        let camera = Camera::on(points, DVec3::new(1.0, 0.4, 0.7), [120.0, 80.0], 0.0);
+        let raster = Raster::of(&faces, &camera, [120, 80]);
+        let (mut once, mut clear) = (0, 0);
+        for (row, column) in (0..80).flat_map(|row| (0..120).map(move |column| (row, column))) {
+            let [own, mixed] = [Raster::pixel, Raster::mixed_pixel]
+                .map(|pixel| pixel(&raster, FINE * column, FINE * row));
+            for (a, b) in own.into_iter().zip(mixed) {
+                assert!(a.abs_diff(b) <= 1, "{own:?} against {mixed:?}");
+            }
+            clear += usize::from(mixed[3] == 0);
+            once += usize::from(own != mixed);
+        }
+        assert!(
+            clear > 1000 && once > 50,
+            "{clear} clear, {once} shaded once"
+        );
     }
 }
