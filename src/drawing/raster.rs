@@ -96,7 +96,8 @@ impl Seen {
         ]
     }
 
-    /// Columns of a row that can lie in it, to a pixel: shares are linear along the row.
+    /// Where a row begins and ends to lie in it [pixel], as far as rounding goes; the end is before the start where none of it does. Shares are linear along
+    /// the row.
     fn columns(&self, row: f64, [mut first, mut last]: [f64; 2]) -> [f64; 2] {
         let [start, next] = [0.0, 1.0].map(|column| self.weights(DVec2::new(column, row)));
         for (start, next) in start.into_iter().zip(next) {
@@ -106,9 +107,20 @@ impl Seen {
                 first = first.max(at);
             } else if slope < 0.0 {
                 last = last.min(at);
+            } else if start < 0.0 {
+                last = f64::NEG_INFINITY;
             }
         }
         [first, last]
+    }
+
+    /// Depth in a place [m], and what it gains by a column.
+    fn depth(&self, at: DVec2) -> [f64; 2] {
+        let depth = |at| {
+            let weights = self.weights(at);
+            (0..3).map(|i| weights[i] * self.depths[i]).sum::<f64>()
+        };
+        [depth(at), depth(at + DVec2::X) - depth(at)]
     }
 }
 
@@ -145,22 +157,33 @@ impl<'a> Raster<'a> {
         let [a, b, c] = seen.corners;
         let low = a.min(b).min(c).max(DVec2::ZERO);
         let high = a.max(b).max(c);
-        let last = |value: f64, count: usize| (value.ceil().max(0.0) as usize).min(count);
-        for row in low.y.floor() as usize..last(high.y, self.size[1]) {
+        let whole = |value: f64, most: usize| (value.max(0.0) as usize).min(most);
+        for row in low.y.floor() as usize..whole(high.y.ceil(), self.size[1]) {
             let [from, to] = seen.columns(row as f64 + 0.5, [low.x, high.x]);
-            let from = (from - 1.5).max(low.x.floor()) as usize;
-            for column in from..last(to + 1.0, last(high.x, self.size[0])) {
-                let weights = seen.weights(middle(column, row));
-                if weights.iter().any(|weight| *weight < 0.0) {
-                    continue;
-                }
-                let depth = (0..3).map(|i| weights[i] * seen.depths[i]).sum::<f64>() as f32;
-                let index = row * self.size[0] + column;
-                if depth > self.depth[index] {
-                    self.depth[index] = depth;
-                    self.nearest[index] = face as u32 + 1;
+            let first = whole((from - 1.5).floor(), self.size[0]);
+            let last = whole((to + 1.5).ceil(), self.size[0]).max(first);
+            // So far from both ends there is no doubt that a sample lies in it.
+            let inner = whole((from + 1.5).ceil(), last).max(first);
+            let inner = inner..whole((to - 2.5).floor(), last).max(inner);
+            for column in (first..inner.start).chain(inner.end..last) {
+                let at = middle(column, row);
+                if seen.weights(at).iter().all(|weight| *weight >= 0.0) {
+                    self.see(face, row * self.size[0] + column, seen.depth(at)[0] as f32);
                 }
             }
+            let [depth, gain] = seen.depth(middle(inner.start, row));
+            for (on, column) in inner.enumerate() {
+                let depth = (depth + on as f64 * gain) as f32;
+                self.see(face, row * self.size[0] + column, depth);
+            }
+        }
+    }
+
+    /// A face at a sample, where nothing nearer is seen.
+    fn see(&mut self, face: usize, index: usize, depth: f32) {
+        if depth > self.depth[index] {
+            self.depth[index] = depth;
+            self.nearest[index] = face as u32 + 1;
         }
     }
 
@@ -228,7 +251,7 @@ impl<'a> Raster<'a> {
         let mut pixels = Vec::with_capacity(4 * width * height / (FINE * FINE));
         for row in (0..height).step_by(FINE) {
             for column in (0..width).step_by(FINE) {
-                pixels.extend(self.pixel(column, row));
+                pixels.extend_from_slice(&self.pixel(column, row));
             }
         }
         pixels
@@ -237,13 +260,14 @@ impl<'a> Raster<'a> {
     /// The pixel whose samples start at one. Where they and their neighbours see one face, it is shaded once.
     fn pixel(&self, column: usize, row: usize) -> [u8; 4] {
         let [width, height] = self.size;
-        let whole = |row: usize| {
-            let start = row * width;
-            &self.nearest[start + column..start + (column + FINE + 1).min(width)]
-        };
         let face = self.face_at([column, row]);
-        let mut seen = (row..(row + FINE + 1).min(height)).flat_map(whole);
-        if !seen.all(|other| *other == face) {
+        let last = (column + FINE).min(width - 1);
+        let mut rows = (0..=FINE).map(|down| (row + down).min(height - 1) * width);
+        let one = rows.all(|start| {
+            let seen = &self.nearest[start + column..=start + last];
+            seen.iter().all(|other| *other == face)
+        });
+        if !one {
             return self.mixed_pixel(column, row);
         }
         if face == 0 {
