@@ -15,9 +15,6 @@ use super::poses::Coarse;
 use super::posture::{MountedArm, Stop};
 use super::request::PlanRequest;
 
-/// Distance and angle to a pose from which the last step to it is taken [m, rad]: what is left after it is below what comfort is rounded to.
-const ENOUGH: f64 = 1e-7;
-
 /// Roll and posture of a job.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outline {
@@ -148,7 +145,7 @@ impl<'a> Choice<'a> {
                 return Some(number);
             };
             let from = way.angles.last().unwrap_or(&way.start);
-            match self.mounted.next(pose, from, ENOUGH) {
+            match self.mounted.next(pose, from) {
                 Ok(q) => {
                     way.comfort = (self.mounted).comfort(&q, spin.forces[reached], way.comfort);
                     way.angles.push(q);
@@ -265,11 +262,11 @@ mod tests {
         for outline in &expected {
             let found = choice.next().unwrap();
             assert_eq!((found.roll, &found.start), (outline.roll, &outline.start));
-            assert!((found.comfort - outline.comfort).abs() < 1e-10);
+            assert!((found.comfort - outline.comfort).abs() < 1e-12);
         }
         assert_eq!(choice.next(), None);
-        let blocked =
-            (ways.first()).and_then(|(_, angles)| collisions::blockade(&request, &coarse, angles));
+        let blocked = (ways.first())
+            .and_then(|(_, angles)| collisions::blockade(&request, &coarse, angles));
         let ended = ended.map(|(pose, stop)| (pose, MountedArm::of(&request).why(stop)));
         if expected.is_empty()
             && let Some((pose, obstacle)) = blocked.or(ended)
@@ -305,8 +302,9 @@ mod tests {
         let stance = plate.stance();
         let path = plate.tool_path(&stance).unwrap();
         let request = plate.request(&stance, &plate.collision, path);
-        let gone =
-            |choice: &Choice| -> usize { choice.ways.iter().map(|way| way.angles.len()).sum() };
+        let gone = |choice: &Choice| -> usize {
+            choice.ways.iter().map(|way| way.angles.len()).sum()
+        };
         let mut choice = Choice::new(&request);
         choice.next().unwrap();
         let first = gone(&choice);

@@ -91,7 +91,7 @@ impl MountedArm<'_> {
         let mut poses = [DPose3::IDENTITY; MAX_JOINTS];
         let poses = &mut poses[..self.chain.len()];
         link_poses(self.chain, self.world_from_base, q, poses);
-        let tip = poses.last().copied().unwrap_or(self.world_from_base) * self.chain.tip_from_last;
+        let tip = tip_pose(self.chain, self.world_from_base, q);
         let mut jacobian = jacobian_at(self.chain, poses, tip.translation);
         if self.chain.len() < 6 {
             let axis = tip.rotation * DVec3::Z;
@@ -112,19 +112,19 @@ impl MountedArm<'_> {
         let mut angles: Vec<Vec<f64>> = Vec::with_capacity(poses.len());
         for (index, pose) in poses.iter().enumerate() {
             let from = angles.last().map_or(start, Vec::as_slice);
-            let next = self.next(pose, from, 0.0).map_err(|stop| (index, stop))?;
+            let next = self.next(pose, from).map_err(|stop| (index, stop))?;
             angles.push(next);
         }
         Ok(angles)
     }
 
-    /// Joint angles at a pose, from those at one near it, `enough` as of [`Self::reach`].
+    /// Joint angles at a pose, from those at one near it.
     ///
     /// # Errors
     /// Why it is not reached.
-    pub(super) fn next(&self, pose: &DPose3, from: &[f64], enough: f64) -> Result<Vec<f64>, Stop> {
+    pub(super) fn next(&self, pose: &DPose3, from: &[f64]) -> Result<Vec<f64>, Stop> {
         let mut q = from.to_vec();
-        if !self.reach(pose, &mut q, enough) {
+        if !self.reach(pose, &mut q) {
             q = self.walk(pose, from)?;
         }
         match self.over_limit(&q) {
@@ -133,20 +133,15 @@ impl MountedArm<'_> {
         }
     }
 
-    /// Newton steps to a pose; whether they led there. Where a step begins nearer than `enough` [m, rad] and leads there, none follows: each squares the error.
-    fn reach(&self, pose: &DPose3, q: &mut [f64], enough: f64) -> bool {
-        let distance = |q: &[f64]| {
-            let tip = tip_pose(self.chain, self.world_from_base, q);
-            (tip.translation - pose.translation).length()
-        };
+    /// Newton steps to a pose; whether they led there.
+    fn reach(&self, pose: &DPose3, q: &mut [f64]) -> bool {
         let mut error = f64::INFINITY;
         for _ in 0..STEPS {
             error = self.newton(pose, q);
-            if error < enough && distance(q) < TOLERANCE {
-                return true;
-            }
         }
-        error < TOLERANCE && distance(q) < TOLERANCE
+        let distance =
+            (tip_pose(self.chain, self.world_from_base, q).translation - pose.translation).length();
+        error < TOLERANCE && distance < TOLERANCE
     }
 
     /// Goes to a pose that Newton steps did not lead to, along the straight way there, in steps as short as it takes.
@@ -160,7 +155,7 @@ impl MountedArm<'_> {
                 from.rotation.slerp(pose.rotation, next),
             );
             let mut tried = q.clone();
-            if self.reach(&between, &mut tried, 0.0) {
+            if self.reach(&between, &mut tried) {
                 (q, done) = (tried, next);
             } else if step > SHORTEST {
                 step *= 0.5;
@@ -389,12 +384,7 @@ impl MountedArm<'_> {
     }
 
     /// Postures at the first pose: the one that a given posture leads to, or distinct ones.
-    pub(super) fn starts(
-        &self,
-        pose: &DPose3,
-        seed_posture: Option<&[f64]>,
-        seed: u64,
-    ) -> Vec<Vec<f64>> {
+    pub(super) fn starts(&self, pose: &DPose3, seed_posture: Option<&[f64]>, seed: u64) -> Vec<Vec<f64>> {
         let options = self.options(seed);
         let solutions: Vec<_> = match seed_posture {
             Some(posture) => {
