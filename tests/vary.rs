@@ -187,6 +187,16 @@ fn a_task_is_a_run_by_its_name_and_its_exit_code_is_a_result() {
     assert_eq!(vary(&bench, "other", &["--quiet", "--jobs", "1"]).code, 0);
     let table = |out: &str| std::fs::read(bench.path(&format!("{out}/runs.parquet"))).unwrap();
     assert!(table("out") == table("other"));
+    // Of several the highest code; those that stand are left, the others done.
+    for id in [&ids[1], &ids[4]] {
+        std::fs::remove_dir_all(bench.path(&format!("out/tasks/{id}"))).unwrap();
+    }
+    let several = ["task", "out/plan.jsonl", &ids[4], &ids[3], &ids[1]];
+    assert_eq!(bench.idc(&several, &[]).code, 1);
+    assert_eq!(vary(&bench, "out", &["--resume", "--quiet"]).code, 0);
+    assert!(table("out") == table("other"));
+    let kept = results(&bench, "out").len();
+    assert_eq!((kept, inodes.len()), (6, 6));
     let none = bench.idc(&["task", "out/plan.jsonl", "abc"], &[]);
     assert!(
         none.only_line("error").contains("has no task abc"),
@@ -283,6 +293,46 @@ fn python_with(module: &str) -> Option<PathBuf> {
         ));
     }
     there.then_some(python)
+}
+
+#[test]
+fn a_task_that_takes_its_program_with_it_costs_no_other_of_its_batch() {
+    let Some(python) = python_with("distributed") else {
+        return;
+    };
+    let bench = Bench::new("paper_step");
+    let python = python.display().to_string();
+    let words = ["vary", "scenario.toml", "--out", "out", "--quiet"];
+    let words = [&words[..], &["--set", "bench.duration_s=8..9:40"]].concat();
+    assert_eq!(bench.idc(&[&words[..], &["--plan"]].concat(), &[]).code, 0);
+    let plan = std::fs::read_to_string(bench.path("out/plan.jsonl")).unwrap();
+    let fatal: Value = serde_json::from_str(plan.lines().nth(30).unwrap()).unwrap();
+    let fatal = fatal["id"].as_str().unwrap();
+    let idc = env!("CARGO_BIN_EXE_idc");
+    // Each call's names are kept: a batch is one.
+    let calls = bench.path("calls").display().to_string();
+    let script = format!(
+        "#!/bin/sh\n[ $1 = task ] && echo $# >> {calls}\ncase \"$*\" in *{fatal}*) kill -9 $$;; esac\nexec {idc} \"$@\"\n"
+    );
+    bench.write("fatal", script);
+    Command::new("chmod")
+        .arg("+x")
+        .arg(bench.path("fatal"))
+        .status()
+        .unwrap();
+    let program = bench.path("fatal").display().to_string();
+    let dask = ["--resume", "--engine", "dask=local:1", "--python", &python];
+    let dask = [&words[..], &dask, &["--program", &program]].concat();
+    let outcome = bench.idc(&dask, &[]);
+    let message = outcome.only_line("error");
+    assert!(
+        message.contains("1 of 40 tasks came to no result"),
+        "{message}"
+    );
+    assert!(message.contains("signal 9"), "{message}");
+    assert_eq!(results(&bench, "out").len(), 39);
+    let calls = std::fs::read_to_string(calls).unwrap();
+    assert!(calls.lines().count() < 40, "{calls}");
 }
 
 /// A scheduler and a worker, as docs/CLUSTER.md starts them; they end with this.

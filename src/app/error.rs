@@ -15,7 +15,7 @@ use crate::scenario::ScenarioError;
 use crate::workpiece::WorkpieceError;
 
 /// Exit codes of the program.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ExitCode {
     /// All is well.
     Done = 0,

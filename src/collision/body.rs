@@ -264,7 +264,10 @@ impl Body {
             let from_world = (at * solid.body_from_solid).inverse();
             other.solids.iter().any(|inner| {
                 let point = from_world.transform_point(other_at.transform_point(inner.centre));
-                solid.shape.contains_local_point(point)
+                let [low, high] = solid.corners;
+                // Most lie outside its box, and a surface is looked through for its nearest point.
+                let in_box = (point.cmpge(low) & point.cmple(high)).all();
+                in_box && solid.shape.contains_local_point(point)
             })
         })
     }

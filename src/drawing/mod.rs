@@ -28,6 +28,10 @@ pub use self::view::edge_direction;
 
 /// Size of a picture [pixel]; shown smaller where there is less room.
 const SIZE: [usize; 2] = [640, 440];
+/// Pixels of an image to one of its picture, along each side: for sharp screens.
+const DENSITY: usize = 2;
+/// Size of such an image [pixel].
+const FINE_SIZE: [usize; 2] = [DENSITY * SIZE[0], DENSITY * SIZE[1]];
 /// Left free around what is shown [pixel]: room for names.
 const MARGIN: f64 = 46.0;
 /// Below an edge's picture: its legend [pixel].
@@ -44,8 +48,8 @@ const ARROW: f64 = 70.0;
 pub fn cell(scene: &Scene, moment: f64) -> String {
     let frame = frame_at(scene, moment);
     let all = faces(scene, frame, |_| true);
-    let (camera, image) = drawn(&all, CELL_EYE, SIZE);
-    let mut svg = Svg::with_image((SIZE, SIZE), "The cell", &image);
+    let (camera, raster) = drawn(&all, CELL_EYE);
+    let mut svg = Svg::with_image((SIZE, SIZE), "The cell", &image(&raster));
     edge_line(&mut svg, &scene.edge_path, &camera, None);
     names(&mut svg, scene, &all, &camera);
     force(&mut svg, scene, frame, &camera);
@@ -66,10 +70,9 @@ pub fn edge(scene: &Scene) -> Option<String> {
         return None;
     }
     let part = faces(scene, 0, |name| name == "workpiece");
-    let (camera, image) = drawn(&part, edge_direction(scene), SIZE);
-    let raster = Raster::of(&part, &camera, SIZE);
+    let (camera, raster) = drawn(&part, edge_direction(scene));
     let size = [SIZE[0], SIZE[1] + LEGEND];
-    let mut svg = Svg::with_image((size, SIZE), "The edge", &image);
+    let mut svg = Svg::with_image((size, SIZE), "The edge", &image(&raster));
     let scale = ErrorScale::of(path);
     edge_line(&mut svg, path, &camera, Some((scale, &raster)));
     ends(&mut svg, path, &camera);
@@ -97,18 +100,25 @@ fn frame_at(scene: &Scene, moment: f64) -> usize {
     nearest.map_or(0, |(frame, _)| frame)
 }
 
-/// A camera on triangles from a direction, and what it sees as a PNG in base64.
-fn drawn(faces: &[Face], eye: DVec3, size: [usize; 2]) -> (Camera, String) {
+/// A camera on triangles from a direction, and what it sees.
+fn drawn(faces: &[Face], eye: DVec3) -> (Camera, Raster<'_>) {
     let points = faces.iter().flat_map(|face| face.corners);
-    let camera = Camera::on(points, eye, size.map(|length| length as f64), MARGIN);
-    // Twice as fine as it is shown, for sharp screens.
+    let camera = Camera::on(points, eye, SIZE.map(|length| length as f64), MARGIN);
     let fine = Camera {
-        scale: 2.0 * camera.scale,
+        scale: DENSITY as f64 * camera.scale,
         ..camera
     };
-    let pixels = size.map(|length| 2 * length);
-    let image = Raster::of(faces, &fine, pixels).pixels();
-    (camera, png::base64_png(&image, pixels))
+    (camera, Raster::of(faces, &fine, FINE_SIZE))
+}
+
+/// An image as a PNG in base64.
+fn image(raster: &Raster<'_>) -> String {
+    png::base64_png(&raster.pixels(), FINE_SIZE)
+}
+
+/// Depth towards the eye of what is seen at a place of the picture [m]; minus infinity where there is nothing.
+fn depth_at(raster: &Raster<'_>, place: DVec2) -> f64 {
+    raster.depth_at(DENSITY as f64 * place)
 }
 
 /// The edge: each piece in its colour, or all in one; pale where the part hides it.
@@ -133,7 +143,7 @@ fn edge_line(
     };
     let hidden = |(piece, depth): &([DVec2; 2], f64)| {
         let middle = 0.5 * (piece[0] + piece[1]);
-        raster.depth_at(middle) > depth + HIDDEN
+        depth_at(raster, middle) > depth + HIDDEN
     };
     for piece in &pieces {
         let opacity = if hidden(piece) { 0.25 } else { 1.0 };

@@ -3,8 +3,8 @@
 use glam::{DVec2, DVec3};
 
 use super::faces::faces;
-use super::raster::{Camera, Raster};
-use super::{HIDDEN, SIZE, Svg, drawn, scale_bar};
+use super::raster::Camera;
+use super::{HIDDEN, SIZE, Svg, depth_at, drawn, image, scale_bar};
 use crate::scene::Scene;
 
 /// Room that a number takes [pixel].
@@ -28,15 +28,14 @@ const PIECE: f64 = 8.0;
 #[must_use]
 pub fn numbered(scene: &Scene, lines: &[Numbered], eye: DVec3) -> String {
     let bodies = faces(scene, 0, |_| true);
-    let (camera, image) = drawn(&bodies, eye, SIZE);
-    let raster = Raster::of(&bodies, &camera, SIZE);
-    let mut svg = Svg::with_image((SIZE, SIZE), "The part and its edges", &image);
+    let (camera, raster) = drawn(&bodies, eye);
+    let mut svg = Svg::with_image((SIZE, SIZE), "The part and its edges", &image(&raster));
     let mut words: Vec<(DVec2, usize)> = Vec::new();
     for line in lines {
         let mut seen = Vec::new();
         for (piece, depth) in pieces(&line.points, &camera) {
             let middle = 0.5 * (piece[0] + piece[1]);
-            let hidden = raster.depth_at(middle) > depth + HIDDEN.min(4.0 / camera.scale);
+            let hidden = depth_at(&raster, middle) > depth + HIDDEN.min(4.0 / camera.scale);
             let opacity = match (hidden, line.pale) {
                 (true, _) => 0.2,
                 (false, true) => 0.5,

@@ -1,7 +1,5 @@
 //! View of triangles from one side: a shaded image with outlines, and how deep each of its pixels lies.
 
-use std::collections::VecDeque;
-
 use glam::{DVec2, DVec3};
 
 use super::faces::Face;
@@ -61,11 +59,15 @@ const FINE: usize = 2;
 const AMBIENT: f64 = 0.45;
 /// Surfaces whose normals part by more than this cosine are divided by a line.
 const CREASE: f64 = 0.8;
+/// Red, green and blue of such a line.
+const LINE: u8 = 45;
 
 /// An image with depth, finer than it is shown.
 pub(super) struct Raster<'a> {
     size: [usize; 2],
     camera: Camera,
+    /// Where light comes from.
+    light: DVec3,
     faces: &'a [Face],
     /// Where each face lies in the image; none of one that is seen edge on.
     seen: Vec<Option<Seen>>,
@@ -94,7 +96,8 @@ impl Seen {
         ]
     }
 
-    /// Columns of a row that can lie in it, to a pixel: shares are linear along the row.
+    /// Where a row begins and ends to lie in it [pixel], as far as rounding goes; the end is before the start where none of it does. Shares are linear along
+    /// the row.
     fn columns(&self, row: f64, [mut first, mut last]: [f64; 2]) -> [f64; 2] {
         let [start, next] = [0.0, 1.0].map(|column| self.weights(DVec2::new(column, row)));
         for (start, next) in start.into_iter().zip(next) {
@@ -104,35 +107,26 @@ impl Seen {
                 first = first.max(at);
             } else if slope < 0.0 {
                 last = last.min(at);
+            } else if start < 0.0 {
+                last = f64::NEG_INFINITY;
             }
         }
         [first, last]
+    }
+
+    /// Depth in a place [m], and what it gains by a column.
+    fn depth(&self, at: DVec2) -> [f64; 2] {
+        let depth = |at| {
+            let weights = self.weights(at);
+            (0..3).map(|i| weights[i] * self.depths[i]).sum::<f64>()
+        };
+        [depth(at), depth(at + DVec2::X) - depth(at)]
     }
 }
 
 /// The middle of a sample.
 fn middle(column: usize, row: usize) -> DVec2 {
     DVec2::new(column as f64 + 0.5, row as f64 + 0.5)
-}
-
-/// What is seen at a sample.
-#[derive(Clone, Copy, Default)]
-struct Sample {
-    colour: [u8; 3],
-    normal: [f32; 3],
-    /// 0 where there is none.
-    body: u16,
-}
-
-impl Sample {
-    /// Whether a body, or a crease of one, ends between two samples.
-    fn parts(&self, other: &Self) -> bool {
-        if self.body != other.body {
-            return true;
-        }
-        let ([a, b, c], [d, e, f]) = (self.normal, other.normal);
-        self.body != 0 && f64::from(a * d + b * e + c * f) < CREASE
-    }
 }
 
 impl<'a> Raster<'a> {
@@ -143,6 +137,8 @@ impl<'a> Raster<'a> {
         let mut raster = Self {
             size: fine,
             camera: *camera,
+            // From above the eye's left shoulder.
+            light: (camera.eye - 0.35 * camera.right - 0.5 * camera.down).normalize(),
             faces,
             seen: faces.iter().map(|face| seen(face, camera)).collect(),
             depth: vec![f32::NEG_INFINITY; count],
@@ -161,22 +157,33 @@ impl<'a> Raster<'a> {
         let [a, b, c] = seen.corners;
         let low = a.min(b).min(c).max(DVec2::ZERO);
         let high = a.max(b).max(c);
-        let last = |value: f64, count: usize| (value.ceil().max(0.0) as usize).min(count);
-        for row in low.y.floor() as usize..last(high.y, self.size[1]) {
+        let whole = |value: f64, most: usize| (value.max(0.0) as usize).min(most);
+        for row in low.y.floor() as usize..whole(high.y.ceil(), self.size[1]) {
             let [from, to] = seen.columns(row as f64 + 0.5, [low.x, high.x]);
-            let from = (from - 1.5).max(low.x.floor()) as usize;
-            for column in from..last(to + 1.0, last(high.x, self.size[0])) {
-                let weights = seen.weights(middle(column, row));
-                if weights.iter().any(|weight| *weight < 0.0) {
-                    continue;
-                }
-                let depth = (0..3).map(|i| weights[i] * seen.depths[i]).sum::<f64>() as f32;
-                let index = row * self.size[0] + column;
-                if depth > self.depth[index] {
-                    self.depth[index] = depth;
-                    self.nearest[index] = face as u32 + 1;
+            let first = whole((from - 1.5).floor(), self.size[0]);
+            let last = whole((to + 1.5).ceil(), self.size[0]).max(first);
+            // So far from both ends there is no doubt that a sample lies in it.
+            let inner = whole((from + 1.5).ceil(), last).max(first);
+            let inner = inner..whole((to - 2.5).floor(), last).max(inner);
+            for column in (first..inner.start).chain(inner.end..last) {
+                let at = middle(column, row);
+                if seen.weights(at).iter().all(|weight| *weight >= 0.0) {
+                    self.see(face, row * self.size[0] + column, seen.depth(at)[0] as f32);
                 }
             }
+            let [depth, gain] = seen.depth(middle(inner.start, row));
+            for (on, column) in inner.enumerate() {
+                let depth = (depth + on as f64 * gain) as f32;
+                self.see(face, row * self.size[0] + column, depth);
+            }
+        }
+    }
+
+    /// A face at a sample, where nothing nearer is seen.
+    fn see(&mut self, face: usize, index: usize, depth: f32) {
+        if depth > self.depth[index] {
+            self.depth[index] = depth;
+            self.nearest[index] = face as u32 + 1;
         }
     }
 
@@ -193,57 +200,106 @@ impl<'a> Raster<'a> {
         f64::from(self.depth[row * self.size[0] + column])
     }
 
-    /// The samples of a row, shaded.
-    fn samples(&self, row: usize) -> Vec<Sample> {
-        let camera = &self.camera;
-        // Light from above the eye's left shoulder.
-        let light = (camera.eye - 0.35 * camera.right - 0.5 * camera.down).normalize();
-        let start = row * self.size[0];
-        let nearest = self.nearest[start..start + self.size[0]].iter().enumerate();
-        let sample = |(column, nearest): (usize, &u32)| {
-            let face = (*nearest as usize).checked_sub(1);
-            let Some((face, seen)) = face.and_then(|f| Some((&self.faces[f], self.seen[f]?)))
-            else {
-                return Sample::default();
-            };
-            let weights = seen.weights(middle(column, row));
-            let normal: DVec3 = (0..3).map(|i| weights[i] * face.normals[i]).sum();
-            let normal = normal.normalize_or(camera.eye);
-            let normal = if normal.dot(camera.eye) < 0.0 {
-                -normal
-            } else {
-                normal
-            };
-            let share = AMBIENT + (1.0 - AMBIENT) * normal.dot(light).max(0.0);
-            // Dark bodies keep their shape in either theme.
-            let shade =
-                |value: u8| ((0.25 * 150.0 + 0.75 * f64::from(value)) * share).min(255.0) as u8;
-            let [red, green, blue, _] = face.colour;
-            Sample {
-                colour: [red, green, blue].map(shade),
-                normal: normal.as_vec3().to_array(),
-                body: face.body,
-            }
+    /// The face that is seen at a sample, from 1; 0 where there is none.
+    fn face_at(&self, [column, row]: [usize; 2]) -> u32 {
+        self.nearest[row * self.size[0] + column]
+    }
+
+    /// Unit normal of a face at a place of the image, towards the eye.
+    fn normal(&self, face: u32, at: DVec2) -> DVec3 {
+        let (camera, index) = (&self.camera, face as usize - 1);
+        let Some(seen) = self.seen[index] else {
+            return camera.eye;
         };
-        nearest.map(sample).collect()
+        let (weights, normals) = (seen.weights(at), &self.faces[index].normals);
+        let normal: DVec3 = (0..3).map(|i| weights[i] * normals[i]).sum();
+        let normal = normal.normalize_or(camera.eye);
+        if normal.dot(camera.eye) < 0.0 {
+            -normal
+        } else {
+            normal
+        }
+    }
+
+    /// Colour of a face at a place of the image.
+    fn shade(&self, face: u32, at: DVec2) -> [u8; 3] {
+        let share = AMBIENT + (1.0 - AMBIENT) * self.normal(face, at).dot(self.light).max(0.0);
+        // Dark bodies keep their shape in either theme.
+        let shade = |value: u8| ((0.25 * 150.0 + 0.75 * f64::from(value)) * share).min(255.0) as u8;
+        let [red, green, blue, _] = self.faces[face as usize - 1].colour;
+        [red, green, blue].map(shade)
+    }
+
+    /// Whether a body, or a crease of one, ends between two samples; a face has none within.
+    fn parts(&self, one: [usize; 2], other: [usize; 2]) -> bool {
+        let faces = [one, other].map(|sample| self.face_at(sample));
+        if faces[0] == faces[1] {
+            return false;
+        }
+        let body = |face: u32| (face as usize).checked_sub(1).map(|f| self.faces[f].body);
+        if body(faces[0]) != body(faces[1]) {
+            return true;
+        }
+        let [a, b] = [(faces[0], one), (faces[1], other)]
+            .map(|(face, [column, row])| self.normal(face, middle(column, row)));
+        a.dot(b) < CREASE
     }
 
     /// Red, green, blue and opacity of the image, row by row.
     pub(super) fn pixels(&self) -> Vec<u8> {
         let [width, height] = self.size;
         let mut pixels = Vec::with_capacity(4 * width * height / (FINE * FINE));
-        // Those of a pixel, and the row below.
-        let mut rows: VecDeque<Vec<Sample>> = VecDeque::new();
         for row in (0..height).step_by(FINE) {
-            for next in row + rows.len()..(row + FINE + 1).min(height) {
-                rows.push_back(self.samples(next));
-            }
             for column in (0..width).step_by(FINE) {
-                pixels.extend(pixel(&rows, column));
+                pixels.extend_from_slice(&self.pixel(column, row));
             }
-            rows.drain(..FINE);
         }
         pixels
+    }
+
+    /// The pixel whose samples start at one. Where they and their neighbours see one face, it is shaded once.
+    fn pixel(&self, column: usize, row: usize) -> [u8; 4] {
+        let [width, height] = self.size;
+        let face = self.face_at([column, row]);
+        let last = (column + FINE).min(width - 1);
+        let mut rows = (0..=FINE).map(|down| (row + down).min(height - 1) * width);
+        let one = rows.all(|start| {
+            let seen = &self.nearest[start + column..=start + last];
+            seen.iter().all(|other| *other == face)
+        });
+        if !one {
+            return self.mixed_pixel(column, row);
+        }
+        if face == 0 {
+            return [0; 4];
+        }
+        let half = 0.5 * FINE as f64;
+        let [red, green, blue] = self.shade(face, DVec2::new(column as f64, row as f64) + half);
+        [red, green, blue, 255]
+    }
+
+    /// Mean of the samples of a pixel; lines divide bodies, and creases of one.
+    fn mixed_pixel(&self, column: usize, row: usize) -> [u8; 4] {
+        let [width, height] = self.size;
+        let mut sum = [0u32; 3];
+        let mut covered = 0;
+        for [column, row] in (0..FINE * FINE).map(|i| [column + i % FINE, row + i / FINE]) {
+            let right = (column + 1 < width).then_some([column + 1, row]);
+            let below = (row + 1 < height).then_some([column, row + 1]);
+            let mut beside = right.into_iter().chain(below);
+            let colour = match self.face_at([column, row]) {
+                _ if beside.any(|next| self.parts([column, row], next)) => [LINE; 3],
+                0 => continue,
+                face => self.shade(face, middle(column, row)),
+            };
+            covered += 1;
+            for (sum, value) in sum.iter_mut().zip(colour) {
+                *sum += u32::from(value);
+            }
+        }
+        let mean = |sum: u32| (sum / covered.max(1)) as u8;
+        let opacity = 255 * covered / (FINE * FINE) as u32;
+        [mean(sum[0]), mean(sum[1]), mean(sum[2]), opacity as u8]
     }
 }
 
@@ -258,32 +314,6 @@ fn seen(face: &Face, camera: &Camera) -> Option<Seen> {
         depths: seen.map(|(_, depth)| depth),
         area,
     })
-}
-
-/// Mean of the samples of a pixel that starts at a column; lines divide bodies, and creases of one.
-fn pixel(rows: &VecDeque<Vec<Sample>>, column: usize) -> [u8; 4] {
-    let mut sum = [0u32; 3];
-    let mut covered = 0;
-    for (down, on) in (0..FINE * FINE).map(|i| (i / FINE, i % FINE)) {
-        let column = column + on;
-        let own = &rows[down][column];
-        let right = rows[down].get(column + 1);
-        let below = rows.get(down + 1).map(|row| &row[column]);
-        let is_line = right.into_iter().chain(below).any(|next| own.parts(next));
-        if own.body == 0 && !is_line {
-            continue;
-        }
-        covered += 1;
-        for (sum, value) in sum.iter_mut().zip(own.colour) {
-            *sum += match is_line {
-                true => 45,
-                false => u32::from(value),
-            };
-        }
-    }
-    let mean = |sum: u32| (sum / covered.max(1)) as u8;
-    let opacity = 255 * covered / (FINE * FINE) as u32;
-    [mean(sum[0]), mean(sum[1]), mean(sum[2]), opacity as u8]
 }
 
 #[cfg(test)]
@@ -376,5 +406,39 @@ mod tests {
             }
         }
         assert!(covered > 3000, "{covered}");
+    }
+
+    #[test]
+    fn a_pixel_shaded_once_has_the_colour_of_its_samples() {
+        let mut chance = ChaCha8Rng::seed_from_u64(5);
+        let mut point = |size: f64| size * (2.0 * DVec3::from_array(chance.random()) - 1.0);
+        let faces: Vec<Face> = (0..60)
+            .map(|number| {
+                let centre = point(1.0);
+                Face {
+                    corners: [0; 3].map(|_| centre + point(0.5)),
+                    normals: [0; 3].map(|_| (DVec3::Z + point(0.4)).normalize()),
+                    colour: [90, 250, 10, 255],
+                    body: 1 + number % 2,
+                }
+            })
+            .collect();
+        let points = faces.iter().flat_map(|face| face.corners);
+        let camera = Camera::on(points, DVec3::new(1.0, 0.4, 0.7), [120.0, 80.0], 0.0);
+        let raster = Raster::of(&faces, &camera, [120, 80]);
+        let (mut once, mut clear) = (0, 0);
+        for (row, column) in (0..80).flat_map(|row| (0..120).map(move |column| (row, column))) {
+            let [own, mixed] = [Raster::pixel, Raster::mixed_pixel]
+                .map(|pixel| pixel(&raster, FINE * column, FINE * row));
+            for (a, b) in own.into_iter().zip(mixed) {
+                assert!(a.abs_diff(b) <= 1, "{own:?} against {mixed:?}");
+            }
+            clear += usize::from(mixed[3] == 0);
+            once += usize::from(own != mixed);
+        }
+        assert!(
+            clear > 1000 && once > 50,
+            "{clear} clear, {once} shaded once"
+        );
     }
 }

@@ -2,10 +2,11 @@
 
 use glamx::DPose3;
 
+use super::choice::Outline;
 use super::error::PlanError;
 use super::feed;
 use super::poses::{backed_off, places, poses_along};
-use super::posture::{MountedArm, Outline};
+use super::posture::MountedArm;
 use super::profile::Profile;
 use super::request::{KNOT_SPACING, Leg, Pass, Phase, PlanRequest, Way, waypoint_error};
 use super::spline::Spline;

@@ -5,6 +5,7 @@
 //! - [`spline`]: smooth joint angles over the path;
 //! - [`plan`]: the whole job (approach, engage, settle, follow, retract), checked against the arm's limits before anything moves.
 
+mod choice;
 mod collisions;
 mod curvature;
 mod error;
@@ -20,9 +21,9 @@ pub mod spline;
 pub mod toolpath;
 pub mod torques;
 
+pub use choice::Outline;
 pub use error::{Obstacle, PlanError};
 pub use plan::Plan;
-pub use posture::Outline;
 pub use reference::Reference;
 pub use request::{Pass, Phase, PlanRequest};
 pub use toolpath::{ToolAxis, ToolPath, ToolStation};

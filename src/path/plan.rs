@@ -3,11 +3,11 @@
 //! Approach, engage and retract run along the tool's axis; the tool's ball is led so that at the working stroke it presses into the edge by the contact's
 //! nominal penetration. Before anything moves the plan is held against the arm's limits.
 
+use super::choice::{Choice, Outline};
 use super::collisions;
 use super::error::{Obstacle, PlanError};
 use super::legs::Layout;
-use super::poses::Coarse;
-use super::posture::{MountedArm, Outline, SINGULAR_LIMIT};
+use super::posture::{MountedArm, SINGULAR_LIMIT};
 use super::profile::PathState;
 use super::reference::Reference;
 use super::request::{Leg, Phase, PlanRequest, Way, waypoint_error};
@@ -20,22 +20,6 @@ use crate::collision::JointMotion;
 const WAYS: usize = 4;
 /// Interval at which speeds and torques are checked [s].
 const INTERVAL: f64 = 4e-3;
-
-/// The most comfortable rolls and postures, at least one and at most `most`.
-fn outlines(request: &PlanRequest, most: usize) -> Result<Vec<Outline>, PlanError> {
-    let mounted = MountedArm::of(request);
-    let coarse = Coarse::new(request);
-    let passable = |angles: &[Vec<f64>]| collisions::passable(request, &coarse, angles);
-    let blockade = |angles: &[Vec<f64>]| collisions::blockade(request, &coarse, angles);
-    mounted
-        .choose(
-            request,
-            |spin| coarse.poses(request, spin),
-            (passable, blockade),
-            most,
-        )
-        .map_err(|(index, obstacle)| coarse.failure(request, index, obstacle))
-}
 
 /// The planned job.
 #[derive(Debug, Clone)]
@@ -57,8 +41,8 @@ impl Plan {
     /// # Errors
     /// The pose that cannot be passed, and why.
     pub fn outline(request: &PlanRequest) -> Result<Outline, PlanError> {
-        let mut outlines = outlines(request, 1)?;
-        Ok(outlines.remove(0))
+        let mut choice = Choice::new(request);
+        choice.next().ok_or_else(|| choice.failure())
     }
 
     /// Plans the job and checks it against the arm's limits and the obstacles.
@@ -66,22 +50,19 @@ impl Plan {
     /// # Errors
     /// The waypoint that cannot be passed, the axis and its limit, or the bodies that meet.
     pub fn new(request: &PlanRequest) -> Result<Self, PlanError> {
-        let mut ways = outlines(request, WAYS)?.into_iter();
-        let first = ways
-            .next()
-            .map(|outline| Self::from_outline(request, outline));
+        let mut choice = Choice::new(request);
+        let first = choice.next().ok_or_else(|| choice.failure())?;
+        let planned = Self::from_outline(request, first);
         let meets = |planned: &Result<Self, PlanError>| {
             planned.as_ref().is_err_and(PlanError::is_collision)
         };
-        // Another roll or posture may pass what is met between the widely spaced poses.
-        let mut others = ways.map(|outline| Self::from_outline(request, outline));
-        match first {
-            Some(planned) if meets(&planned) => {
-                others.find(|other| !meets(other)).unwrap_or(planned)
-            }
-            Some(planned) => planned,
-            None => Self::from_outline(request, Self::outline(request)?),
+        if !meets(&planned) {
+            return planned;
         }
+        // Another roll or posture may pass what is met between the widely spaced poses.
+        let others = choice.take(WAYS - 1);
+        let mut others = others.map(|outline| Self::from_outline(request, outline));
+        others.find(|other| !meets(other)).unwrap_or(planned)
     }
 
     /// Plans the job with roll and posture as they were chosen.

@@ -1,4 +1,4 @@
-//! Joint angles along a list of flange poses, and the choice of the posture to start with.
+//! Joint angles along a list of flange poses, and the postures to start with.
 //!
 //! Each pose is reached from the one before by plain Newton steps of least norm, always the same number, so that joint angles are as smooth as the poses.
 
@@ -109,19 +109,28 @@ impl MountedArm<'_> {
     /// # Errors
     /// The number of the pose that is not reached, and why.
     pub fn track(&self, poses: &[DPose3], start: &[f64]) -> Result<Vec<Vec<f64>>, (usize, Stop)> {
-        let mut q = start.to_vec();
-        let mut angles = Vec::with_capacity(poses.len());
+        let mut angles: Vec<Vec<f64>> = Vec::with_capacity(poses.len());
         for (index, pose) in poses.iter().enumerate() {
-            let before = q.clone();
-            if !self.reach(pose, &mut q) {
-                q = self.walk(pose, &before).map_err(|stop| (index, stop))?;
-            }
-            if let Some(obstacle) = self.over_limit(&q) {
-                return Err((index, Stop::Met(obstacle)));
-            }
-            angles.push(q.clone());
+            let from = angles.last().map_or(start, Vec::as_slice);
+            let next = self.next(pose, from).map_err(|stop| (index, stop))?;
+            angles.push(next);
         }
         Ok(angles)
+    }
+
+    /// Joint angles at a pose, from those at one near it.
+    ///
+    /// # Errors
+    /// Why it is not reached.
+    pub(super) fn next(&self, pose: &DPose3, from: &[f64]) -> Result<Vec<f64>, Stop> {
+        let mut q = from.to_vec();
+        if !self.reach(pose, &mut q) {
+            q = self.walk(pose, from)?;
+        }
+        match self.over_limit(&q) {
+            Some(obstacle) => Err(Stop::Met(obstacle)),
+            None => Ok(q),
+        }
     }
 
     /// Newton steps to a pose; whether they led there.
@@ -317,19 +326,15 @@ impl MountedArm<'_> {
         most.map_or_else(String::new, |joint| self.chain.joints[joint].name.clone())
     }
 
-    /// Comfort of a way, the least of its poses': distance from singularity, from position limits, from torque limits under gravity, each 1 where it is
-    /// comfortable, the device's included, and the forces on the tool [N, world]; negative below the floor.
-    fn comfort(&self, angles: &[Vec<f64>], tool_forces: &[DVec3]) -> f64 {
-        let poses = angles.iter().zip(tool_forces);
-        let of_limits = poses.map(|(q, &force)| self.distance_from_limits(q, force));
-        let least = of_limits.fold(f64::INFINITY, f64::min);
-        // Most poses are farther from singularity than some other is from its limits.
-        angles.iter().fold(least, |least, q| {
-            match self.is_regular(q, COMFORTABLE * least) {
-                true => least,
-                false => least.min(self.singularity(q) / COMFORTABLE),
-            }
-        })
+    /// Comfort of joint angles, the least of: distance from singularity, from position limits, from torque limits under gravity, the device's included, and
+    /// a force on the tool [N, world], each 1 where it is comfortable; negative below the floor. No more than `most`.
+    pub(super) fn comfort(&self, q: &[f64], tool_force: DVec3, most: f64) -> f64 {
+        let least = most.min(self.distance_from_limits(q, tool_force));
+        // Most are farther from singularity than from some limit.
+        match self.is_regular(q, COMFORTABLE * least) {
+            true => least,
+            false => least.min(self.singularity(q) / COMFORTABLE),
+        }
     }
 
     /// Comfort of joint angles, the distance from singularity apart.
@@ -379,7 +384,7 @@ impl MountedArm<'_> {
     }
 
     /// Postures at the first pose: the one that a given posture leads to, or distinct ones.
-    fn starts(&self, pose: &DPose3, seed_posture: Option<&[f64]>, seed: u64) -> Vec<Vec<f64>> {
+    pub(super) fn starts(&self, pose: &DPose3, seed_posture: Option<&[f64]>, seed: u64) -> Vec<Vec<f64>> {
         let options = self.options(seed);
         let solutions: Vec<_> = match seed_posture {
             Some(posture) => {
@@ -401,126 +406,6 @@ impl MountedArm<'_> {
         let all = (0..count).map(|i| i as f64 * std::f64::consts::TAU / count as f64);
         given.map_or_else(|| all.collect(), |spin| vec![spin])
     }
-
-    /// Chooses spin and posture: the most comfortable ways, at most `most`, through all poses that `passable` lets pass; `blockade` says where one that it does not is blocked. `poses_at` gives the coarse poses of the whole job
-    /// for a spin [rad], with the force on the tool at each.
-    ///
-    /// # Errors
-    /// The best try's pose that is not reached or passed, and why.
-    pub fn choose(
-        &self,
-        request: &PlanRequest,
-        poses_at: impl Fn(f64) -> (Vec<DPose3>, Vec<DVec3>),
-        (passable, blockade): (
-            impl Fn(&[Vec<f64>]) -> bool,
-            impl Fn(&[Vec<f64>]) -> Option<(usize, Obstacle)>,
-        ),
-        most: usize,
-    ) -> Result<Vec<Outline>, (usize, Obstacle)> {
-        let (mut ways, failure) = self.ways(request, poses_at);
-        // Of ways as good as each other to rounding the first found stays first.
-        let rank = |way: &PassedWay| (way.worth / 1e-9).round();
-        ways.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
-        let mut outlines = Vec::new();
-        let mut blocked: Option<Vec<Vec<f64>>> = None;
-        for way in ways {
-            if !passable(&way.angles) {
-                blocked.get_or_insert(way.angles);
-                continue;
-            }
-            outlines.push(Outline {
-                roll: way.spin,
-                start: way.start,
-                comfort: way.comfort,
-            });
-            if outlines.len() == most {
-                break;
-            }
-        }
-        if !outlines.is_empty() {
-            return Ok(outlines);
-        }
-        let stopped = |(index, stop)| (index, self.why(stop));
-        let unreachable = Obstacle::OutOfReach {
-            distance: f64::NAN,
-            axis: None,
-        };
-        Err(blocked
-            .and_then(|angles| blockade(&angles))
-            .or_else(|| failure.map(stopped))
-            .unwrap_or((0, unreachable)))
-    }
-
-    /// All ways through the poses, and of those that ended where the one did that came farthest.
-    fn ways(
-        &self,
-        request: &PlanRequest,
-        poses_at: impl Fn(f64) -> (Vec<DPose3>, Vec<DVec3>),
-    ) -> (Vec<PassedWay>, Option<(usize, Stop)>) {
-        let mut ways: Vec<PassedWay> = Vec::new();
-        let mut failure: Option<(usize, Stop)> = None;
-        for spin in self.spins(request.roll) {
-            let (poses, forces) = poses_at(spin);
-            let starts = self.starts(&poses[0], request.seed_posture, request.seed);
-            if starts.is_empty() && failure.is_none() {
-                let middle: Vec<f64> = self
-                    .chain
-                    .joints
-                    .iter()
-                    .map(|joint| joint.middle().unwrap_or(0.0))
-                    .collect();
-                failure = Some((
-                    0,
-                    Stop::NotReached {
-                        pose: poses[0],
-                        from: middle,
-                    },
-                ));
-            }
-            for start in starts {
-                match self.track(&poses, &start) {
-                    Ok(angles) => {
-                        let comfort = self.comfort(&angles, &forces);
-                        // Beyond comfortable all are as good as each other.
-                        let mut worth = comfort.min(1.0);
-                        if let Some(posture) = request.seed_posture {
-                            let far = posture
-                                .iter()
-                                .zip(&start)
-                                .map(|(a, b)| (a - b).abs())
-                                .fold(0.0, f64::max);
-                            worth -= 10.0 * far;
-                        }
-                        ways.push(PassedWay {
-                            worth,
-                            comfort,
-                            spin,
-                            start,
-                            angles,
-                        });
-                    }
-                    Err(reached) => {
-                        if failure.as_ref().is_none_or(|f| reached.0 > f.0) {
-                            failure = Some(reached);
-                        }
-                    }
-                }
-            }
-        }
-        (ways, failure)
-    }
-}
-
-/// Roll and posture of a job.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Outline {
-    /// Angle of the flange's x axis about the tool's axis from the direction of travel, at the start of the edge [rad].
-    pub roll: f64,
-    /// Joint angles at the start of the edge [rad].
-    pub start: Vec<f64>,
-    /// How far the whole way keeps from singularity (least singular value over 0.15), limits of position (distance over 0.5 rad) and of torque (spare share over
-    /// 0.3), the least of these [1]; 0 at a limit, from 1 on comfortable.
-    pub comfort: f64,
 }
 
 /// Where a way through poses ended; why is found out only of the one that is reported.
@@ -535,15 +420,6 @@ pub enum Stop {
         /// Joint angles nearest to it [rad].
         from: Vec<f64>,
     },
-}
-
-/// A way through all poses.
-struct PassedWay {
-    worth: f64,
-    comfort: f64,
-    spin: f64,
-    start: Vec<f64>,
-    angles: Vec<Vec<f64>>,
 }
 
 /// Axis times angle of the shortest turn of one unit vector onto another.

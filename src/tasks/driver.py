@@ -11,12 +11,16 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 import uuid
 from collections import deque
 from pathlib import Path
 
 RESULTS = (0, 1, 2, 3)
 TRIES = 3
+# Time that a batch takes, about, and most tasks of one: a worker that is lost loses no more.
+LONG = 1.0
+MOST = 64
 
 
 def say(**words):
@@ -33,34 +37,39 @@ def version_here(program, mark):
     return version, os.path.exists(mark)
 
 
-def perform(program, plan, name):
-    """Does a task where plan and store can be reached. A signal is an error, and so tried again; an exit code is an answer."""
+def perform(program, plan, names):
+    """Does tasks where plan and store can be reached. A signal is an error, and so tried again; an exit code is an answer."""
     quiet = {**os.environ, "RAYON_NUM_THREADS": "1"}
-    done = subprocess.run([program, "task", plan, name], capture_output=True, text=True, env=quiet)
+    start = time.monotonic()
+    done = subprocess.run([program, "task", plan, *names], capture_output=True, text=True, env=quiet)
     if done.returncode < 0:
         raise RuntimeError(f"ended by signal {-done.returncode}")
-    return done.returncode, done.stderr.strip()
+    return done.returncode, done.stderr.strip(), time.monotonic() - start
 
 
-def perform_carried(program, shared, plan, head, line, files, before):
-    """The same where nothing is shared: files come with the task, its folder is the answer."""
-    task = json.loads(line)
+def perform_carried(program, shared, plan, head, batch, files, before):
+    """The same where nothing is shared: files come with the tasks, their folders are the answer."""
+    names = [json.loads(line)["id"] for line in batch]
     with tempfile.TemporaryDirectory(prefix="idc-task-") as root:
         place = lambda path: Path(root + os.path.abspath(path))
         here = place(plan)
         here.parent.mkdir(parents=True, exist_ok=True)
-        here.write_text(head + line)
+        here.write_text(head + "".join(batch))
+        results = here.parent / "tasks"
         for path, content in {**shared, **files}.items():
             place(path).parent.mkdir(parents=True, exist_ok=True)
             place(path).write_bytes(content)
         for name, content in before.items():
-            path = here.parent / "tasks" / task["after"] / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(content)
-        code, message = perform(program, str(here), task["id"])
-        folder = here.parent / "tasks" / task["id"]
-        result = {path.name: path.read_bytes() for path in folder.iterdir()} if folder.is_dir() else {}
-        return code, message, result
+            for path, text in content.items():
+                (results / name).mkdir(parents=True, exist_ok=True)
+                (results / name / path).write_bytes(text)
+        answer = perform(program, str(here), names)
+        folders = {name: results / name for name in names if (results / name).is_dir()}
+        return *answer, {name: content_of(folder) for name, folder in folders.items()}
+
+
+def content_of(folder):
+    return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
 class Work:
@@ -76,6 +85,8 @@ class Work:
         self.waiting = {}
         self.lost = set()
         self.ready = deque()
+        self.alone = deque()
+        self.seconds = None
         self.done = 0
         self.shared = None
 
@@ -103,19 +114,29 @@ class Work:
                 return task, line
         return None
 
-    async def submit(self, task, line):
+    def batch(self):
+        """Tasks that one process does one after the other: as many as take a while together, by the time of those before."""
+        if self.alone:
+            return [self.alone.popleft()]
+        size = min(max(int(LONG / self.seconds), 1), MOST) if self.seconds else 1
+        tasks = []
+        while len(tasks) < size and (task := self.next()):
+            tasks.append(task)
+        return tasks
+
+    async def submit(self, batch):
         options = {"retries": TRIES - 1, "pure": False}
         if not self.carry:
-            return self.client.submit(perform, self.program, self.plan, task["id"], **options)
+            names = [task["id"] for task, _ in batch]
+            return self.client.submit(perform, self.program, self.plan, names, **options)
         if self.shared is None:
             files = self.read(json.loads(self.head)["files"])
             self.shared = await self.client.scatter(files, broadcast=True)
-        before = {}
-        if "after" in task:
-            before = {path.name: path.read_bytes() for path in (self.tasks / task["after"]).iterdir()}
-        files = self.read(task.get("files", []))
+        before = {task["after"]: content_of(self.tasks / task["after"]) for task, _ in batch if "after" in task}
+        files = self.read([file for task, _ in batch for file in task.get("files", [])])
+        lines = [line for _, line in batch]
         return self.client.submit(
-            perform_carried, self.program, self.shared, self.plan, self.head, line, files, before, **options
+            perform_carried, self.program, self.shared, self.plan, self.head, lines, files, before, **options
         )
 
     def keep(self, name, files):
@@ -138,25 +159,30 @@ class Work:
         for task, _ in self.waiting.pop(name, []):
             self.fail(task["id"], why)
 
-    async def finish(self, name, future):
+    async def finish(self, batch, future):
         try:
-            code, message, *result = await future
+            code, message, seconds, *results = await future
+            self.seconds = seconds / len(batch)
         except Exception as error:
-            code, message, result = None, f"{type(error).__name__}: {error}".splitlines()[0], []
-        if result:
-            self.keep(name, result[0])
+            code, message, results = None, f"{type(error).__name__}: {error}".splitlines()[0], []
+        for name, files in (results[0] if results else {}).items():
+            self.keep(name, files)
         # A file system that is shared may show a folder late.
         for _ in range(20):
-            if self.stands(name) or code not in RESULTS:
+            if code not in RESULTS or all(self.stands(task["id"]) for task, _ in batch):
                 break
             await asyncio.sleep(0.1)
-        if self.stands(name):
-            self.done += 1
-            say(done=self.done)
-            self.ready.extend(self.waiting.pop(name, []))
-        else:
+        for task, line in batch:
             # Also a worker that was lost may have put its result in place before.
-            self.fail(name, message.splitlines()[-1] if message else f"exit code {code}")
+            if self.stands(task["id"]):
+                self.done += 1
+                self.ready.extend(self.waiting.pop(task["id"], []))
+            elif len(batch) > 1:
+                # Which of them it was, and why, is seen of each by itself.
+                self.alone.append((task, line))
+            else:
+                self.fail(task["id"], message.splitlines()[-1] if message else f"exit code {code}")
+        say(done=self.done)
 
 
 def refuse(reason):
@@ -214,12 +240,11 @@ async def work_through(client, order):
     running = {}
     threads = sum(info["nthreads"] for info in client.scheduler_info(n_workers=-1)["workers"].values())
     # As many as keep every worker busy: what a scheduler holds does not grow with the plan.
-    window = max(16, 4 * threads)
+    window = max(4, 2 * threads)
     while True:
-        while len(running) < window and (following := work.next()):
-            task, line = following
-            future = await work.submit(task, line)
-            running[asyncio.ensure_future(work.finish(task["id"], future))] = future
+        while len(running) < window and (batch := work.batch()):
+            future = await work.submit(batch)
+            running[asyncio.ensure_future(work.finish(batch, future))] = future
         if not running:
             return
         finished, _ = await asyncio.wait(running, return_when=asyncio.FIRST_COMPLETED)

@@ -1,6 +1,6 @@
 //! A plan: a head, then a task a line.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
@@ -199,34 +199,40 @@ impl Plan {
         self.path.parent().unwrap_or(Path::new(""))
     }
 
-    /// The task of a name. Lines of others are passed over unread.
+    /// The tasks of these names, in the plan's order. Lines of others are passed over unread.
     ///
     /// # Errors
-    /// There is none, or the plan cannot be read.
-    pub fn task(mut self, id: &str) -> Result<Task, TaskError> {
-        let start = format!("{{\"id\":\"{id}\"");
-        let mut text = String::new();
-        loop {
+    /// One is not there, or the plan cannot be read.
+    pub fn tasks(mut self, ids: &[&str]) -> Result<Vec<Task>, TaskError> {
+        let mut missing: BTreeSet<&str> = ids.iter().copied().collect();
+        let (mut tasks, mut text) = (Vec::new(), String::new());
+        while let Some(id) = missing.first() {
             text.clear();
             self.line += 1;
             let read = self.lines.read_line(&mut text);
             if read.map_err(|e| RecordingError::read(&self.path, e))? == 0 {
                 return Err(TaskError::NoTask {
                     file: self.path.display().to_string(),
-                    id: id.to_owned(),
+                    id: (*id).to_owned(),
                 });
             }
-            if text.starts_with(&start) {
-                return self.parsed(&text);
+            let name = text.strip_prefix("{\"id\":\"");
+            let name = name.and_then(|rest| rest.split('"').next());
+            if name.is_some_and(|name| missing.remove(name)) {
+                tasks.push(self.parsed(&text)?);
             }
         }
+        Ok(tasks)
     }
 
-    /// Sees whether the files of the head, and of a task, are what they were when it was named.
+    /// Sees whether the files of the head, and of tasks, are what they were when they were named.
     ///
     /// # Errors
     /// One has changed, or is gone.
-    pub fn check(&self, others: &[SourceFile]) -> Result<(), TaskError> {
+    pub fn check<'a>(
+        &'a self,
+        others: impl IntoIterator<Item = &'a SourceFile>,
+    ) -> Result<(), TaskError> {
         for file in self.head.files.iter().chain(others) {
             let path = self.folder().join(&file.file);
             let bytes = crate::file::read(&path).map_err(|e| RecordingError::read(&path, e))?;
@@ -295,10 +301,17 @@ mod tests {
         Plan::write(&path, &head(3), given).unwrap();
         let read: Result<Vec<Task>, _> = Plan::open(&path).unwrap().collect();
         assert_eq!(read.unwrap(), tasks);
-        let found = Plan::open(&path).unwrap().task("bb").unwrap();
-        assert_eq!(found, tasks[1]);
-        let none = Plan::open(&path).unwrap().task("b").unwrap_err();
-        assert!(none.to_string().contains("has no task b"), "{none}");
+        let found = |ids: &[&str]| Plan::open(&path).unwrap().tasks(ids);
+        assert_eq!(found(&["bb"]).unwrap(), tasks[1..2]);
+        assert_eq!(
+            found(&["cc", "aa"]).unwrap(),
+            [tasks[0].clone(), tasks[2].clone()]
+        );
+        assert_eq!(found(&[]).unwrap(), []);
+        for none in [&["b"][..], &["aa", "b"]] {
+            let none = found(none).unwrap_err().to_string();
+            assert!(none.contains("has no task b"), "{none}");
+        }
     }
 
     #[test]

@@ -46,14 +46,16 @@ impl BurrProfile {
         let intervals = (length / step).ceil().max(1.0);
         let step = length / intervals;
         let samples = self.samples(radius, intervals as i64, step);
-        let mut first = 0;
+        let highest = samples.iter().map(|sample| sample.1);
+        let highest = highest.fold(f64::NEG_INFINITY, f64::max);
+        let mut middle = 0;
         let lifts: Vec<f64> = (0..=intervals as i64)
             .map(|entry| {
                 let position = entry as f64 * step;
-                while samples[first].0 < position - radius {
-                    first += 1;
+                while samples[middle].0 < position {
+                    middle += 1;
                 }
-                lift_over(&samples[first..], position, radius)
+                lift_over(samples.split_at(middle), position, radius, highest)
             })
             .collect();
         let slopes = monotone_slopes(&lifts, step);
@@ -80,19 +82,28 @@ impl BurrProfile {
     }
 }
 
-/// Lift of a ball at `position` over samples that begin at its left end.
-fn lift_over(samples: &[(f64, f64)], position: f64, radius: f64) -> f64 {
+/// Lift of a ball at `position` over samples to its left and right, none of them above `highest`: outwards, until the ball is so far above that none can
+/// touch it.
+fn lift_over(
+    (left, right): (&[(f64, f64)], &[(f64, f64)]),
+    position: f64,
+    radius: f64,
+    highest: f64,
+) -> f64 {
     let mut lift = f64::NEG_INFINITY;
-    for &(sample, height) in samples {
+    let mut touch = |&(sample, height): &(f64, f64)| {
         let offset = sample - position;
-        if offset > radius {
-            break;
+        if offset.abs() > radius {
+            return false;
         }
         // sqrt(r^2 - u^2) - r without its cancellation, so that no burr gives exactly no lift.
         let squared = offset * offset;
         let sag = squared / (radius + (radius * radius - squared).max(0.0).sqrt());
         lift = lift.max(height - sag);
-    }
+        highest - sag >= lift
+    };
+    right.iter().all(&mut touch);
+    left.iter().rev().all(&mut touch);
     lift
 }
 
@@ -233,6 +244,26 @@ mod tests {
             let centre = touch - RADIUS * angle.sin();
             let lift = burr.height(touch) + RADIUS * angle.cos() - RADIUS;
             assert!((ridden.lift(centre) - lift).abs() < 2e-8, "{touch}");
+        }
+    }
+
+    #[test]
+    fn lift_is_the_largest_over_all_that_lies_under_the_ball() {
+        for (seed, mean, deviation) in [(3, 2e-4, 1e-4), (7, 3e-4, 1e-6), (9, 1e-3, 8e-4)] {
+            let burr = BurrProfile::seeded_random(seed, mean, deviation, 2e-3).unwrap();
+            let ridden = burr.ridden_by_ball(RADIUS, 0.05, 1e-4).unwrap();
+            let samples = burr.samples(RADIUS, 500, 1e-4);
+            for entry in 0..=500 {
+                let position = f64::from(entry) * 1e-4;
+                let lifts = samples.iter().filter_map(|(sample, height)| {
+                    let squared = (sample - position).powi(2);
+                    let rest = RADIUS.powi(2) - squared;
+                    (rest >= 0.0).then(|| height - squared / (RADIUS + rest.sqrt()))
+                });
+                let all = lifts.fold(f64::NEG_INFINITY, f64::max);
+                let lift = ridden.lifts[entry as usize];
+                assert!((lift - all).abs() < 1e-15, "{position}: {lift}, {all}");
+            }
         }
     }
 
