@@ -265,8 +265,8 @@ mod tests {
             assert!((found.comfort - outline.comfort).abs() < 1e-12);
         }
         assert_eq!(choice.next(), None);
-        let blocked = (ways.first())
-            .and_then(|(_, angles)| collisions::blockade(&request, &coarse, angles));
+        let blocked =
+            (ways.first()).and_then(|(_, angles)| collisions::blockade(&request, &coarse, angles));
         let ended = ended.map(|(pose, stop)| (pose, MountedArm::of(&request).why(stop)));
         if expected.is_empty()
             && let Some((pose, obstacle)) = blocked.or(ended)
@@ -302,9 +302,8 @@ mod tests {
         let stance = plate.stance();
         let path = plate.tool_path(&stance).unwrap();
         let request = plate.request(&stance, &plate.collision, path);
-        let gone = |choice: &Choice| -> usize {
-            choice.ways.iter().map(|way| way.angles.len()).sum()
-        };
+        let gone =
+            |choice: &Choice| -> usize { choice.ways.iter().map(|way| way.angles.len()).sum() };
         let mut choice = Choice::new(&request);
         choice.next().unwrap();
         let first = gone(&choice);

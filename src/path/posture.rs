@@ -384,7 +384,12 @@ impl MountedArm<'_> {
     }
 
     /// Postures at the first pose: the one that a given posture leads to, or distinct ones.
-    pub(super) fn starts(&self, pose: &DPose3, seed_posture: Option<&[f64]>, seed: u64) -> Vec<Vec<f64>> {
+    pub(super) fn starts(
+        &self,
+        pose: &DPose3,
+        seed_posture: Option<&[f64]>,
+        seed: u64,
+    ) -> Vec<Vec<f64>> {
         let options = self.options(seed);
         let solutions: Vec<_> = match seed_posture {
             Some(posture) => {

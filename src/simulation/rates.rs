@@ -5,7 +5,7 @@
 use super::held_arm::Joints;
 
 /// Error of a joint that is accepted of what is lacking at the engine's step [rad].
-const ACCEPTED: f64 = 1e-7;
+const ACCEPTED: f64 = 2e-8;
 /// Share of that below which the engine is asked half as often [1].
 const EASY: f64 = 0.125;
 /// Motion of a joint from where the engine's bodies stand up to which the ball's place is known without them [rad or m].
