@@ -18,6 +18,8 @@ use crate::simulation::held_arm::{Acting, Engine, Joints};
 const SLIDES_ON: f64 = 0.1;
 /// Error of that direction, as it was expected, from which on friction is taken anew [rad].
 const TURNS: f64 = 1e-5;
+/// Times that friction is taken at most.
+const LOOKS: usize = 4;
 
 /// What acts on the tool from outside over a step.
 pub(super) struct Outside {
@@ -112,31 +114,44 @@ impl World {
         if self.rates.every_step() {
             return Err(None);
         }
-        let count = self.joints.len();
-        let Some(mut outside) = self.sliding(pressed, &self.expected()[..count]) else {
-            return Err(None);
+        let outside = match self.slide_on(pressed) {
+            Ok(outside) => outside,
+            Err(unknown) => {
+                self.take_back();
+                return Err(unknown);
+            }
         };
-        if !self.forecast(&outside) {
-            return Err(outside.slips.is_empty().then_some(outside));
-        }
-        let slides = self.slides_on(&outside);
-        let middle = self.middle();
-        if slides && self.slides_otherwise(&outside, &middle[..count]) {
-            self.take_back();
-            let Some(turned) = self.sliding(pressed, &middle[..count]) else {
-                return Err(None);
-            };
-            outside = turned;
-            self.forecast(&outside);
-        }
-        if slides && self.rates.may_hold(&self.off_seen()) && self.within_limits() {
+        if self.rates.may_hold(&self.off_seen()) && self.within_limits() {
             self.reading = outside.reading;
             self.held.pass(self.step);
             self.rates.held();
             return Ok(());
         }
         self.take_back();
-        Err(slides.then_some(outside))
+        Err(Some(outside))
+    }
+
+    /// Gives the joints the speeds of the step's end with a tool that slides on all through it, its friction in the direction in which it slides in the middle. That is
+    /// sought as the fixed point that it is: where friction damps faster than the step resolves, it is none, and Rapier finds it. Where it is, but not the arm, what acts on
+    /// the tool is given.
+    fn slide_on(&mut self, pressed: &[(DVec3, f64)]) -> Result<Outside, Option<Outside>> {
+        let count = self.joints.len();
+        let mut middle = self.expected();
+        for _ in 0..LOOKS {
+            let outside = self.sliding(pressed, &middle[..count]).ok_or(None)?;
+            if !self.forecast(&outside) {
+                return Err(outside.slips.is_empty().then_some(outside));
+            }
+            if !self.slides_on(&outside) {
+                return Err(None);
+            }
+            middle = self.middle();
+            if !self.slides_otherwise(&outside, &middle[..count]) {
+                return Ok(outside);
+            }
+            self.take_back();
+        }
+        Err(None)
     }
 
     /// Gives the joints the speeds of the step's start.
