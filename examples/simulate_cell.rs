@@ -1,7 +1,7 @@
 //! A cell simulated from its scenario file: the contact force while the tool follows the edge.
 //!
 //! ```text
-//! following from 3.38 s to 17.50 s: 150.1 N, standard deviation 0.74 N
+//! following from 3.38 s to 17.50 s: 150.1 N, standard deviation 0.75 N
 //! ```
 
 use std::error::Error;

@@ -81,11 +81,13 @@ impl DeviceShape {
         }
         let [radius, short] = SPINDLE;
         let spindle_end = mounting.tool_centre - short;
+        // A tool that is mounted so short has none to speak of.
+        let spindle = (spindle_end - length).max(1e-3);
         moving.push(along_z(
             radius,
-            spindle_end - length,
+            spindle,
             0.0,
-            0.5 * (spindle_end + length),
+            spindle_end - 0.5 * spindle,
             HOUSING,
         ));
         moving.push(along_z(

@@ -16,7 +16,7 @@ const NEAR: f64 = 5e-3;
 pub struct Rates {
     most: usize,
     now: usize,
-    /// Steps since the engine's last, that included.
+    /// Steps since the engine's last, that included; of an engine that was not asked yet as many as may be.
     passed: usize,
     /// Steps of both so far.
     steps: usize,
@@ -29,7 +29,7 @@ impl Rates {
         Self {
             most,
             now: 1,
-            passed: 0,
+            passed: 1,
             steps: 0,
             asked: 0,
         }

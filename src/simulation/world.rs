@@ -145,6 +145,46 @@ fn moment(z: f64) -> f64 {
     }
 }
 
+/// Puts an arm's links on a base; gives the handle of each joint, Rapier's axis index of its only degree of freedom, and the last link.
+fn insert_arm(
+    physics: &mut PhysicsWorld,
+    base: RigidBodyHandle,
+    chain: &KinematicChain,
+) -> (Vec<MultibodyJointHandle>, Vec<usize>, RigidBodyHandle) {
+    let (mut joints, mut axes, mut parent) = (Vec::new(), Vec::new(), base);
+    for joint in &chain.joints {
+        let body = &joint.body;
+        let properties =
+            MassProperties::with_inertia_matrix(body.centre_of_mass, body.mass, body.inertia);
+        let link = physics.insert_body(
+            RigidBodyBuilder::dynamic()
+                .additional_mass_properties(properties)
+                .can_sleep(false),
+        );
+        // Or the engine would not know the mass before its first step.
+        let colliders = &physics.colliders;
+        physics.bodies[link].recompute_mass_properties_from_colliders(colliders);
+        // Rapier's one free axis is x (linear or angular); a basis turns it onto the joint's axis.
+        let basis = DPose3::from_rotation(GenericJoint::complete_ang_frame(joint.axis));
+        let (locked, axis) = match joint.kind {
+            JointKind::Revolute => (JointAxesMask::LOCKED_REVOLUTE_AXES, 3),
+            JointKind::Prismatic => (JointAxesMask::LOCKED_PRISMATIC_AXES, 0),
+        };
+        let data = GenericJointBuilder::new(locked)
+            .local_frame1(joint.parent_from_joint * basis)
+            .local_frame2(basis)
+            .build();
+        let handle = physics
+            .multibody_joints
+            .insert(parent, link, data, true)
+            .expect("a chain never closes a loop");
+        joints.push(handle);
+        axes.push(axis);
+        parent = link;
+    }
+    (joints, axes, parent)
+}
+
 impl World {
     /// Builds the world with all joints at zero.
     pub fn new(description: &WorldDescription) -> Self {
@@ -155,41 +195,11 @@ impl World {
         let base = physics.insert_body(RigidBodyBuilder::fixed().pose(description.world_from_base));
         let part = physics.insert_body(RigidBodyBuilder::fixed());
 
-        let (mut joints, mut axes, mut parent) = (Vec::new(), Vec::new(), base);
-        for joint in &description.chain.joints {
-            let body = &joint.body;
-            let properties =
-                MassProperties::with_inertia_matrix(body.centre_of_mass, body.mass, body.inertia);
-            let link = physics.insert_body(
-                RigidBodyBuilder::dynamic()
-                    .additional_mass_properties(properties)
-                    .can_sleep(false),
-            );
-            // Or the engine would not know the mass before its first step.
-            let colliders = &physics.colliders;
-            physics.bodies[link].recompute_mass_properties_from_colliders(colliders);
-            // Rapier's one free axis is x (linear or angular); a basis turns it onto the joint's axis.
-            let basis = DPose3::from_rotation(GenericJoint::complete_ang_frame(joint.axis));
-            let (locked, axis) = match joint.kind {
-                JointKind::Revolute => (JointAxesMask::LOCKED_REVOLUTE_AXES, 3),
-                JointKind::Prismatic => (JointAxesMask::LOCKED_PRISMATIC_AXES, 0),
-            };
-            let data = GenericJointBuilder::new(locked)
-                .local_frame1(joint.parent_from_joint * basis)
-                .local_frame2(basis)
-                .build();
-            let handle = physics
-                .multibody_joints
-                .insert(parent, link, data, true)
-                .expect("a chain never closes a loop");
-            joints.push(handle);
-            axes.push(axis);
-            parent = link;
-        }
+        let (joints, axes, tool_body) = insert_arm(&mut physics, base, &description.chain);
         let part_contact = PartContact::insert(
             &mut physics,
             part,
-            parent,
+            tool_body,
             description.part,
             description.tool,
             description.friction,
@@ -209,7 +219,7 @@ impl World {
             joints,
             axes,
             links,
-            tool_body: parent,
+            tool_body,
             tool: description.tool,
             slide_axis: description.chain.joints[count - 1].axis,
             step: description.step,
