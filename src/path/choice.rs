@@ -70,8 +70,8 @@ pub(super) struct Choice<'a> {
     open: BinaryHeap<(i64, Reverse<usize>)>,
     /// The most comfortable way on which bodies meet.
     blocked: Option<usize>,
-    /// Where the way ended that came farthest of those that came to no end: its number, the pose's, and why.
-    ended: Option<(usize, usize, Stop)>,
+    /// Where the way stopped that came farthest of those that came to no end: its number, the pose's, and why.
+    farthest: Option<(usize, usize, Stop)>,
 }
 
 impl<'a> Choice<'a> {
@@ -86,7 +86,7 @@ impl<'a> Choice<'a> {
             ways: Vec::new(),
             open: BinaryHeap::new(),
             blocked: None,
-            ended: None,
+            farthest: None,
         };
         for angle in mounted.spins(request.roll) {
             choice.add(angle);
@@ -125,13 +125,13 @@ impl<'a> Choice<'a> {
         });
     }
 
-    /// Keeps where a way ended, if it came farther than all others, or as far and was found before them.
+    /// Keeps where a way stopped, if it came farther than all others, or as far and was found before them.
     fn end(&mut self, number: usize, pose: usize, stop: Stop) {
-        let farther = |(other, farthest, _): &(usize, usize, Stop)| {
-            pose > *farthest || (pose == *farthest && number < *other)
+        let farther = |(other, reached, _): &(usize, usize, Stop)| {
+            pose > *reached || (pose == *reached && number < *other)
         };
-        if self.ended.as_ref().is_none_or(farther) {
-            self.ended = Some((number, pose, stop));
+        if self.farthest.as_ref().is_none_or(farther) {
+            self.farthest = Some((number, pose, stop));
         }
     }
 
@@ -157,20 +157,20 @@ impl<'a> Choice<'a> {
         None
     }
 
-    /// What is in the way, where there is no roll and posture: on the most comfortable way what meets, else where the one ended that came farthest.
+    /// What is in the way, where there is no roll and posture: on the most comfortable way what meets, else where the one stopped that came farthest.
     pub(super) fn failure(&self) -> PlanError {
         let blockade = self.blocked.and_then(|number| {
             collisions::blockade(self.request, &self.coarse, &self.ways[number].angles)
         });
-        let ended = || {
-            let (_, pose, stop) = self.ended.clone()?;
+        let farthest = || {
+            let (_, pose, stop) = self.farthest.clone()?;
             Some((pose, self.mounted.why(stop)))
         };
         let unreachable = Obstacle::OutOfReach {
             distance: f64::NAN,
             axis: None,
         };
-        let (index, obstacle) = blockade.or_else(ended).unwrap_or((0, unreachable));
+        let (index, obstacle) = blockade.or_else(farthest).unwrap_or((0, unreachable));
         self.coarse.failure(self.request, index, obstacle)
     }
 }
@@ -204,10 +204,10 @@ mod tests {
     use crate::cell::{Setup, Stance};
     use crate::scenario::load;
 
-    /// Ways to their end, the most comfortable first, of those as comfortable the first found; and where the one ended that came farthest.
+    /// Ways to their end, the most comfortable first, of those as comfortable the first found; and where the one stopped that came farthest.
     fn all_ways(request: &PlanRequest) -> (Vec<(Outline, Vec<Vec<f64>>)>, Option<(usize, Stop)>) {
         let mounted = MountedArm::of(request);
-        let (mut ways, mut ended) = (Vec::new(), None::<(usize, Stop)>);
+        let (mut ways, mut farthest) = (Vec::new(), None::<(usize, Stop)>);
         for roll in mounted.spins(request.roll) {
             let (poses, forces) = Coarse::new(request).poses(request, roll);
             for start in mounted.starts(&poses[0], request.seed_posture, request.seed) {
@@ -224,8 +224,8 @@ mod tests {
                         };
                         ways.push((outline, angles));
                     }
-                    Err(stop) if ended.as_ref().is_none_or(|farthest| stop.0 > farthest.0) => {
-                        ended = Some(stop);
+                    Err(stop) if farthest.as_ref().is_none_or(|other| stop.0 > other.0) => {
+                        farthest = Some(stop);
                     }
                     Err(_) => (),
                 }
@@ -239,7 +239,7 @@ mod tests {
             ((way.comfort.min(1.0) - 10.0 * away) / 1e-9).round()
         };
         ways.sort_by(|(a, _), (b, _)| rank(b).total_cmp(&rank(a)));
-        (ways, ended)
+        (ways, farthest)
     }
 
     /// How many ways of a job with its part somewhere else are chosen from; they are the same as those that all are gone to their end for.
@@ -252,7 +252,7 @@ mod tests {
             briefly: true,
             ..setup.request(&stance, &collision, setup.tool_path(&stance).unwrap())
         };
-        let (ways, ended) = all_ways(&request);
+        let (ways, farthest) = all_ways(&request);
         let coarse = Coarse::new(&request);
         let passable = |(_, angles): &&(Outline, Vec<Vec<f64>>)| {
             collisions::passable(&request, &coarse, angles)
@@ -267,9 +267,9 @@ mod tests {
         assert_eq!(choice.next(), None);
         let blocked =
             (ways.first()).and_then(|(_, angles)| collisions::blockade(&request, &coarse, angles));
-        let ended = ended.map(|(pose, stop)| (pose, MountedArm::of(&request).why(stop)));
+        let farthest = farthest.map(|(pose, stop)| (pose, MountedArm::of(&request).why(stop)));
         if expected.is_empty()
-            && let Some((pose, obstacle)) = blocked.or(ended)
+            && let Some((pose, obstacle)) = blocked.or(farthest)
         {
             let failure = coarse.failure(&request, pose, obstacle);
             assert_eq!(choice.failure().to_string(), failure.to_string());

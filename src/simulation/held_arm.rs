@@ -58,7 +58,7 @@ pub struct HeldArm {
 }
 
 impl HeldArm {
-    /// Whether the engine has told anything yet.
+    /// Whether the engine was asked yet.
     pub fn known(&self) -> bool {
         self.count > 0
     }
@@ -184,8 +184,8 @@ mod tests {
 
     const FORCE: [f64; 2] = [0.4, -0.3];
 
-    /// An arm that an engine has told of such a bias several times, as the pose was at the start of its steps; what was lacking at the last.
-    fn told() -> (HeldArm, Joints, f64) {
+    /// An arm that has learnt such a bias from an engine several times, as the pose was at the start of its steps; what was lacking at the last.
+    fn taught() -> (HeldArm, Joints, f64) {
         let (mut arm, mut time) = (HeldArm::default(), 0.0);
         let mut lacking = [0.0; MAX_JOINTS];
         for _ in 0..20 {
@@ -209,7 +209,7 @@ mod tests {
     // Catches: a bias that stays as it was; the start of a step for its middle.
     #[test]
     fn a_bias_that_changes_evenly_is_followed_to_the_middle_of_each_step() {
-        let (mut arm, lacking, time) = told();
+        let (mut arm, lacking, time) = taught();
         assert!(lacking[0].abs() < 1e-12, "{lacking:?}");
         let acting = Acting {
             step: STEP,
@@ -226,7 +226,7 @@ mod tests {
 
     #[test]
     fn what_laws_add_to_the_mass_matrix_is_added() {
-        let (mut arm, ..) = told();
+        let (mut arm, ..) = taught();
         let acting = |added| Acting {
             step: STEP,
             force: joints([2.0, -1.0]),
@@ -243,7 +243,7 @@ mod tests {
     fn nothing_is_said_before_the_engine_has() {
         let mut arm = HeldArm::default();
         assert!(arm.forecast(&Acting::default()).is_none());
-        let (mut arm, ..) = told();
+        let (mut arm, ..) = taught();
         arm.forget();
         assert!(arm.forecast(&Acting::default()).is_none());
     }
