@@ -204,8 +204,11 @@ mod tests {
     use crate::cell::{Setup, Stance};
     use crate::scenario::load;
 
+    /// A way and its joint angles at the poses [rad].
+    type Gone = (Outline, Vec<Vec<f64>>);
+
     /// Ways to their end, the most comfortable first, of those as comfortable the first found; and where the one stopped that came farthest.
-    fn all_ways(request: &PlanRequest) -> (Vec<(Outline, Vec<Vec<f64>>)>, Option<(usize, Stop)>) {
+    fn all_ways(request: &PlanRequest) -> (Vec<Gone>, Option<(usize, Stop)>) {
         let mounted = MountedArm::of(request);
         let (mut ways, mut farthest) = (Vec::new(), None::<(usize, Stop)>);
         for roll in mounted.spins(request.roll) {

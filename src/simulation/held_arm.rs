@@ -95,7 +95,7 @@ impl HeldArm {
             return true;
         }
         self.factored = None;
-        for i in 0..self.count {
+        for (i, &added) in added.iter().enumerate().take(self.count) {
             for j in 0..=i {
                 let known: f64 = (0..j).map(|k| self.factor[i][k] * self.factor[j][k]).sum();
                 let rest = self.mass[i][j] - known;
@@ -103,7 +103,7 @@ impl HeldArm {
                     self.factor[i][j] = rest * self.factor[j][j];
                     continue;
                 }
-                let rest = rest + added[i];
+                let rest = rest + added;
                 if rest.is_nan() || rest <= 0.0 {
                     return false;
                 }

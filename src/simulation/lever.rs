@@ -51,8 +51,8 @@ impl Lever {
     pub fn after(&self, motions: &[f64]) -> Self {
         let mut after = *self;
         let (mut turned, mut moved, mut bend) = (DVec3::ZERO, DVec3::ZERO, DVec3::ZERO);
-        for i in 0..self.count {
-            let (turn, step) = (self.turns[i] * motions[i], self.moves[i] * motions[i]);
+        for (i, &motion) in motions.iter().enumerate().take(self.count) {
+            let (turn, step) = (self.turns[i] * motion, self.moves[i] * motion);
             after.turns[i] += turned.cross(self.turns[i]);
             bend += (turned + 0.5 * turn).cross(step);
             turned += turn;

@@ -20,6 +20,7 @@ use glam::DVec3;
 use glamx::DPose3;
 use rapier3d::prelude::*;
 
+use self::hold::Way;
 use super::contact::{ContactReading, PartContact, ToolBall};
 use super::held_arm::{HeldArm, Joints};
 use super::lever::Lever;
@@ -367,9 +368,9 @@ impl World {
 
     /// Has Rapier's joints act by their laws, and by further forces [N m or N].
     fn tell_laws(&mut self, further: &Joints) {
-        for i in 0..self.joints.len() {
+        for (i, further) in further.iter().enumerate().take(self.joints.len()) {
             let (law, theta, q) = (self.laws[i], self.moments[i], self.positions[i]);
-            let force = self.early(i) + further[i];
+            let force = self.early(i) + further;
             let stiffness = match law.stiffness > 0.0 {
                 true => theta * theta * law.stiffness,
                 false => CONSTANT_LOAD_STIFFNESS,
@@ -411,12 +412,16 @@ impl World {
         for (applied, speed) in self.applied.iter_mut().zip(&self.velocities) {
             applied.1 = *speed;
         }
-        if let Err(outside) = self.hold(pressed) {
-            match outside {
-                Some(outside) => self.ask_sliding(&outside),
-                None => self.ask(pressed),
+        match self.hold(pressed) {
+            Way::Held => {}
+            Way::Sliding(outside) => {
+                self.ask_sliding(&outside);
+                self.limit_drives();
             }
-            self.limit_drives();
+            Way::Open => {
+                self.ask(pressed);
+                self.limit_drives();
+            }
         }
         self.pushed = (DVec3::ZERO, DVec3::ZERO);
         for (i, gained) in self.gained.iter_mut().enumerate().take(self.joints.len()) {

@@ -82,10 +82,13 @@ impl BurrProfile {
     }
 }
 
+/// A place along the edge and the height there [m].
+type Sample = (f64, f64);
+
 /// Lift of a ball at `position` over samples to its left and right, none of them above `highest`: outwards, until the ball is so far above that none can
 /// touch it.
 fn lift_over(
-    (left, right): (&[(f64, f64)], &[(f64, f64)]),
+    (left, right): (&[Sample], &[Sample]),
     position: f64,
     radius: f64,
     highest: f64,

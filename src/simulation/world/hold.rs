@@ -32,6 +32,16 @@ pub(super) struct Outside {
     joints: Joints,
 }
 
+/// How the arm is moved by a step.
+pub(super) enum Way {
+    /// By what Rapier had last: it is done.
+    Held,
+    /// By Rapier, with what acts on the tool, which slides.
+    Sliding(Outside),
+    /// By Rapier, which finds the friction of a tool that may stick.
+    Open,
+}
+
 impl World {
     /// What acts on a tool that is pressed with forces [N] along normals if it slides as the joints' speeds are; none where it does not move.
     pub(super) fn sliding(&self, pressed: &[(DVec3, f64)], speeds: &[f64]) -> Option<Outside> {
@@ -108,50 +118,46 @@ impl World {
         })
     }
 
-    /// Moves the joints by a step of the arm as Rapier had it last, the tool pressed with forces [N] along normals. Where it may not, the joints are as they were, and what
-    /// acts on the tool is given if it slides: a drive comes to its limit, or it is Rapier's turn.
-    pub(super) fn hold(&mut self, pressed: &[(DVec3, f64)]) -> Result<(), Option<Outside>> {
+    /// Moves the joints by a step of the arm as Rapier had it last, the tool pressed with forces [N] along normals. Where it may not, the joints are as they were.
+    pub(super) fn hold(&mut self, pressed: &[(DVec3, f64)]) -> Way {
         if self.rates.every_step() {
-            return Err(None);
+            return Way::Open;
         }
-        let outside = match self.slide_on(pressed) {
-            Ok(outside) => outside,
-            Err(unknown) => {
-                self.take_back();
-                return Err(unknown);
-            }
-        };
-        if self.rates.may_hold(&self.off_seen()) && self.within_limits() {
+        let slides = self.slide_on(pressed);
+        if let Some((outside, true)) = &slides
+            && self.rates.may_hold(&self.off_seen())
+            && self.within_limits()
+        {
             self.reading = outside.reading;
             self.held.pass(self.step);
             self.rates.held();
-            return Ok(());
+            return Way::Held;
         }
         self.take_back();
-        Err(Some(outside))
+        slides.map_or(Way::Open, |(outside, _)| Way::Sliding(outside))
     }
 
     /// Gives the joints the speeds of the step's end with a tool that slides on all through it, its friction in the direction in which it slides in the middle. That is
-    /// sought as the fixed point that it is: where friction damps faster than the step resolves, it is none, and Rapier finds it. Where it is, but not the arm, what acts on
-    /// the tool is given.
-    fn slide_on(&mut self, pressed: &[(DVec3, f64)]) -> Result<Outside, Option<Outside>> {
+    /// sought as the fixed point that it is: where friction damps faster than the step resolves, it is none, and Rapier finds it. Beside what acts on the tool, whether the
+    /// arm is known.
+    fn slide_on(&mut self, pressed: &[(DVec3, f64)]) -> Option<(Outside, bool)> {
         let count = self.joints.len();
         let mut middle = self.expected();
         for _ in 0..LOOKS {
-            let outside = self.sliding(pressed, &middle[..count]).ok_or(None)?;
+            let outside = self.sliding(pressed, &middle[..count])?;
             if !self.forecast(&outside) {
-                return Err(outside.slips.is_empty().then_some(outside));
+                return outside.slips.is_empty().then_some((outside, false));
             }
             if !self.slides_on(&outside) {
-                return Err(None);
+                return None;
             }
             middle = self.middle();
             if !self.slides_otherwise(&outside, &middle[..count]) {
-                return Ok(outside);
+                return Some((outside, true));
             }
             self.take_back();
         }
-        Err(None)
+        None
     }
 
     /// Gives the joints the speeds of the step's start.
@@ -169,7 +175,7 @@ impl World {
             };
             let (force, speed) = self.at_moment(i);
             let torque = force - limit.losses.at(0.0, speed);
-            if !(torque.abs() <= limit.effort) {
+            if torque.is_nan() || torque.abs() > limit.effort {
                 return false;
             }
             (self.drives[i].torque, self.drives[i].cut) = (torque, false);
@@ -186,10 +192,10 @@ impl World {
             added: [0.0; MAX_JOINTS],
         };
         let weight = self.slide_weight(0.5 * h);
-        for i in 0..self.joints.len() {
+        for (i, weight) in weight.iter().enumerate().take(self.joints.len()) {
             let yielding = self.yielding(i);
             acting.added[i] = h * yielding;
-            acting.force[i] += self.early(i) - yielding * self.velocities[i] + weight[i];
+            acting.force[i] += self.early(i) - yielding * self.velocities[i] + weight;
         }
         let Some(gained) = self.held.forecast(&acting) else {
             return false;
