@@ -20,7 +20,6 @@ use glam::DVec3;
 use glamx::DPose3;
 use rapier3d::prelude::*;
 
-use self::hold::Way;
 use super::contact::{ContactReading, PartContact, ToolBall};
 use super::held_arm::{HeldArm, Joints};
 use super::lever::Lever;
@@ -412,17 +411,7 @@ impl World {
         for (applied, speed) in self.applied.iter_mut().zip(&self.velocities) {
             applied.1 = *speed;
         }
-        match self.hold(pressed) {
-            Way::Held => {}
-            Way::Sliding(outside) => {
-                self.ask_sliding(&outside);
-                self.limit_drives();
-            }
-            Way::Open => {
-                self.ask(pressed);
-                self.limit_drives();
-            }
-        }
+        self.take(pressed);
         self.pushed = (DVec3::ZERO, DVec3::ZERO);
         for (i, gained) in self.gained.iter_mut().enumerate().take(self.joints.len()) {
             *gained = self.velocities[i] - self.applied[i].1;

@@ -22,7 +22,7 @@ const TURNS: f64 = 1e-5;
 const LOOKS: usize = 4;
 
 /// What acts on the tool from outside over a step.
-pub(super) struct Outside {
+struct Outside {
     /// Forces [N] so far off the ball's centre [m].
     forces: Vec<(DVec3, DVec3)>,
     /// Where it slides along a normal, and how fast [m/s].
@@ -33,7 +33,7 @@ pub(super) struct Outside {
 }
 
 /// How the arm is moved by a step.
-pub(super) enum Way {
+enum Way {
     /// By what Rapier had last: it is done.
     Held,
     /// By Rapier, with what acts on the tool, which slides.
@@ -44,7 +44,7 @@ pub(super) enum Way {
 
 impl World {
     /// What acts on a tool that is pressed with forces [N] along normals if it slides as the joints' speeds are; none where it does not move.
-    pub(super) fn sliding(&self, pressed: &[(DVec3, f64)], speeds: &[f64]) -> Option<Outside> {
+    fn sliding(&self, pressed: &[(DVec3, f64)], speeds: &[f64]) -> Option<Outside> {
         let mut outside = Outside {
             forces: Vec::new(),
             slips: Vec::new(),
@@ -118,8 +118,18 @@ impl World {
         })
     }
 
+    /// Gives the joints the speeds of the step's end, the tool pressed with forces [N] along normals: by what Rapier had last where it may, else by Rapier.
+    pub(super) fn take(&mut self, pressed: &[(DVec3, f64)]) {
+        match self.hold(pressed) {
+            Way::Held => return,
+            Way::Sliding(outside) => self.ask_sliding(&outside),
+            Way::Open => self.ask(pressed),
+        }
+        self.limit_drives();
+    }
+
     /// Moves the joints by a step of the arm as Rapier had it last, the tool pressed with forces [N] along normals. Where it may not, the joints are as they were.
-    pub(super) fn hold(&mut self, pressed: &[(DVec3, f64)]) -> Way {
+    fn hold(&mut self, pressed: &[(DVec3, f64)]) -> Way {
         if self.rates.every_step() {
             return Way::Open;
         }
@@ -224,7 +234,7 @@ impl World {
     }
 
     /// Asks Rapier for the step of a tool that slides, and learns from it.
-    pub(super) fn ask_sliding(&mut self, outside: &Outside) {
+    fn ask_sliding(&mut self, outside: &Outside) {
         let ahead = self.held.ahead(self.step);
         let [start, middle] = [0.0, 0.5 * self.step].map(|after| self.slide_weight(after));
         let (mut further, mut known) = (ahead, outside.joints);
