@@ -146,6 +146,17 @@ fn a_mass_matrix_held_over_steps_moves_the_joints_by_less_than_encoders_read() {
     }
 }
 
+// A burr moves the slide, and the weight of its body the bias of the joints: without its share by the stroke the arm would be asked for twice as often.
+#[test]
+fn the_mass_matrix_is_held_over_steps_on_a_smooth_edge_and_on_a_burr() {
+    for (name, least) in [("plate_edge_ideal", 3.5), ("deburred_edge", 6.0)] {
+        let run = Cell::new(scenario(name)).unwrap().run(&mut |_| ()).unwrap();
+        let steps = run.steps_per_mass_matrix;
+        println!("{name}: {steps:.2} steps for one mass matrix");
+        assert!(steps > least, "{name}: {steps}");
+    }
+}
+
 /// A bench scenario's run by a number of sub-steps.
 fn bench(scenario: &BenchScenario, substeps: usize) -> Recording {
     let mut scenario = scenario.clone();
