@@ -146,7 +146,7 @@ fn a_mass_matrix_held_over_steps_moves_the_joints_by_less_than_encoders_read() {
     }
 }
 
-// A burr moves the slide, and the weight of its body the bias of the joints: without its share by the stroke the arm would be asked for twice as often.
+// Catches: what is lacking at a step of Rapier's taken for more than it is, so that each step is Rapier's again.
 #[test]
 fn the_mass_matrix_is_held_over_steps_on_a_smooth_edge_and_on_a_burr() {
     for (name, least) in [("plate_edge_ideal", 3.5), ("deburred_edge", 6.0)] {

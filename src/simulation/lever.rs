@@ -90,13 +90,6 @@ impl Lever {
         })
     }
 
-    /// Adds to forces of the joints [N m or N] what a moment on the tool [N m] does.
-    pub fn add_moment(&self, moment: DVec3, out: &mut [f64]) {
-        for (out, turns) in out.iter_mut().zip(&self.turns) {
-            *out += turns.dot(moment);
-        }
-    }
-
     /// Adds to forces of the joints [N m or N] what a force [N] does that acts on the tool `arm` [m] off the ball's centre.
     pub fn add_force(&self, force: DVec3, arm: DVec3, out: &mut [f64]) {
         let moment = arm.cross(force);

@@ -201,11 +201,10 @@ impl World {
             force: outside.joints,
             added: [0.0; MAX_JOINTS],
         };
-        let weight = self.slide_weight(0.5 * h);
-        for (i, weight) in weight.iter().enumerate().take(self.joints.len()) {
+        for i in 0..self.joints.len() {
             let yielding = self.yielding(i);
             acting.added[i] = h * yielding;
-            acting.force[i] += self.early(i) - yielding * self.velocities[i] + weight;
+            acting.force[i] += self.early(i) - yielding * self.velocities[i];
         }
         let Some(gained) = self.held.forecast(&acting) else {
             return false;
@@ -214,17 +213,6 @@ impl World {
             *speed += gained;
         }
         true
-    }
-
-    /// Forces of the joints by the weight of the slide's body, as far as they come of its stroke, a time [s] after the start of the step [N m or N]:
-    /// m s (z_i x a) g, m its mass, s stroke, a its axis. A burr moves it faster than what else the pose changes.
-    fn slide_weight(&self, after: f64) -> Joints {
-        let last = self.joints.len() - 1;
-        let stroke = self.positions[last] + after * self.applied[last].1;
-        let weight = self.physics.gravity * (self.chain.joints[last].body.mass * stroke);
-        let mut joints = [0.0; MAX_JOINTS];
-        (self.lever).add_moment(self.lever.axis.cross(weight), &mut joints[..=last]);
-        joints
     }
 
     /// How a joint's law yields to the speed at the end of the step [N s/m or N m s/rad].
@@ -236,17 +224,11 @@ impl World {
     /// Asks Rapier for the step of a tool that slides, and learns from it.
     fn ask_sliding(&mut self, outside: &Outside) {
         let ahead = self.held.ahead(self.step);
-        let [start, middle] = [0.0, 0.5 * self.step].map(|after| self.slide_weight(after));
-        let (mut further, mut known) = (ahead, outside.joints);
-        for i in 0..self.joints.len() {
-            further[i] += middle[i] - start[i];
-            known[i] += middle[i];
-        }
         self.part_contact.lift();
         self.push(&outside.forces);
-        self.advance(&further);
+        self.advance(&ahead);
         self.reading = outside.reading;
-        let lacking = self.learn(known, &ahead);
+        let lacking = self.learn(outside.joints, &ahead);
         let laws = self.laws.iter().zip(lacking);
         let stiff = laws.filter(|(law, _)| law.stiffness > 0.0);
         let error = stiff.map(|(law, lacking)| lacking.abs() / law.stiffness);
@@ -263,9 +245,6 @@ impl World {
             let share = force / self.reading.normal_force.max(f64::MIN_POSITIVE);
             let force = *normal * *force + self.reading.friction * share;
             (self.lever).add_force(force, -*normal * self.tool.radius, out);
-        }
-        for (joint, weight) in joints.iter_mut().zip(self.slide_weight(0.0)) {
-            *joint += weight;
         }
         self.held.forget();
         self.learn(joints, &[0.0; MAX_JOINTS]);
