@@ -220,7 +220,11 @@ impl Bench {
 }
 
 impl Load for Bench {
-    fn force(&self, _: f64, motion: PistonMotion, touching: bool) -> f64 {
+    type Now = ();
+
+    fn now(&self, _: f64) {}
+
+    fn force(&self, (): &(), motion: PistonMotion, touching: bool) -> f64 {
         let weight = self.parameters.moving_mass * self.gravity;
         if !touching {
             return weight;
@@ -228,7 +232,7 @@ impl Load for Bench {
         weight - self.law.linear(motion.stroke - self.position, motion.speed)
     }
 
-    fn touches(&self, _: f64, motion: PistonMotion) -> bool {
+    fn touches(&self, (): &(), motion: PistonMotion) -> bool {
         let penetration = motion.stroke - self.position;
         self.law.pushes(penetration, motion.speed)
     }

@@ -86,6 +86,17 @@ pub(super) struct Mode {
     direction: i8,
 }
 
+/// What is outside the device at a time of the step: each is looked at once, for the sub-step that ends then and the one that begins.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Outside<N> {
+    /// Since the start of the step [s].
+    pub(super) time: f64,
+    /// Pressure at the regulator's outlet [Pa gauge].
+    pub(super) outlet: f64,
+    /// Of the load.
+    load: N,
+}
+
 /// A sub-step's surroundings.
 pub(super) struct Surroundings<'a, L, P> {
     pub(super) device: &'a Device<P>,
@@ -115,8 +126,9 @@ impl<P: Borrow<DeviceParameters>> Device<P> {
         state.regulator.command(regulator, set_pressure);
         let delay = self.parameters().switching_delay;
         state.spool.command(state.valve, delay);
+        let mut now = load.now(0.0);
         let longest = (dt / substeps as f64)
-            .min(self.longest_substep(load, state, *motion, dt))
+            .min(self.longest_substep((load, &now), state, *motion, dt))
             .max(dt / MOST_SUBSTEPS);
         let mut flow = Flow {
             air: state.air,
@@ -143,10 +155,17 @@ impl<P: Borrow<DeviceParameters>> Device<P> {
                 disturbance: state.disturbance,
             };
             if count > 0.0 {
-                surroundings.begin::<LEDGER>(&mut flow, time, h);
-            }
-            for i in 1..count as usize {
-                surroundings.advance::<LEDGER>(&mut flow, time + h * i as f64, h);
+                let mut at = Outside {
+                    time,
+                    outlet: surroundings.outlet(time),
+                    load: now,
+                };
+                at = surroundings.begin::<LEDGER>(&mut flow, at, h);
+                for i in 1..count as usize {
+                    at.time = time + h * i as f64;
+                    at = surroundings.advance::<LEDGER>(&mut flow, at, h);
+                }
+                now = at.load;
             }
             state.seal_deflection = surroundings.deflection;
             state.regulator.follow(regulator, &trajectory);
@@ -169,7 +188,7 @@ impl<P: Borrow<DeviceParameters>> Device<P> {
 
     fn longest_substep<L: Load>(
         &self,
-        load: &L,
+        (load, now): (&L, &L::Now),
         state: &DeviceState,
         motion: PistonMotion,
         dt: f64,
@@ -189,7 +208,7 @@ impl<P: Borrow<DeviceParameters>> Device<P> {
         if mechanical >= allowed {
             return allowed;
         }
-        let outside = load.force(0.0, motion, load.touches(0.0, motion));
+        let outside = load.force(now, motion, load.touches(now, motion));
         let force = self.piston_force(state, motion) + outside;
         let acceleration = force / self.parameters().moving_mass;
         let speed = motion.speed.abs() + acceleration.abs() * dt;
@@ -223,14 +242,22 @@ fn next_look([a, b]: [[f64; 2]; 2], widest: f64, whole: f64) -> f64 {
 impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
     /// Advances over the first sub-step of a trajectory. Where the outlet leaves the chamber's pressure, the flow begins with the root of time, which a step
     /// of whatever order meets with an error of its length to the power 1.5 alone: that sub-step is halved towards its start.
-    fn begin<const LEDGER: bool>(&mut self, flow: &mut Flow, start: f64, h: f64) {
+    fn begin<const LEDGER: bool>(
+        &mut self,
+        flow: &mut Flow,
+        start: Outside<L::Now>,
+        h: f64,
+    ) -> Outside<L::Now> {
         let halvings = self.halvings(flow, h);
         let mut part = h * 0.5f64.powi(halvings);
-        self.advance::<LEDGER>(flow, start, part);
+        let time = start.time;
+        let mut at = self.advance::<LEDGER>(flow, start, part);
         for _ in 0..halvings {
-            self.advance::<LEDGER>(flow, start + part, part);
+            at.time = time + part;
+            at = self.advance::<LEDGER>(flow, at, part);
             part *= 2.0;
         }
+        at
     }
 
     /// Number of times that the first sub-step of a trajectory is halved until the outlet moves in it by no more than it is away from the chamber's pressure already,
@@ -252,20 +279,26 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
         halvings.clamp(0, MOST_HALVINGS)
     }
 
-    /// Advances over a sub-step, cut where the mode changes.
-    fn advance<const LEDGER: bool>(&mut self, flow: &mut Flow, start: f64, h: f64) {
+    /// Advances over a sub-step, cut where the mode changes; gives what is outside at its end.
+    fn advance<const LEDGER: bool>(
+        &mut self,
+        flow: &mut Flow,
+        start: Outside<L::Now>,
+        h: f64,
+    ) -> Outside<L::Now> {
         let (mut from, mut left) = (start, h);
         for _ in 0..MOST_EVENTS {
             if !L::MOVES {
                 break;
             }
-            let mode = self.mode(from, flow.motion);
-            let whole = self.step::<LEDGER>(flow, from, left, mode);
-            if self.mode(from + left, whole.motion) == mode {
-                self.accept(flow, whole, [from, left]);
-                return;
+            let mode = self.mode(&from.load, flow.motion);
+            let (whole, end) = self.step::<LEDGER>(flow, &from, left, mode);
+            if self.mode(&end.load, whole.motion) == mode {
+                self.accept(flow, whole, [from.time, left]);
+                return end;
             }
-            let (mut before, mut after, mut there) = ([0.0, flow.motion.speed], left, whole);
+            let (mut before, mut after) = ([0.0, flow.motion.speed], left);
+            let (mut there, mut end) = (whole, end);
             let near = left * 0.5f64.powi(LOOKS - 1);
             for look in 0..LOOKS {
                 if after - before[0] <= near {
@@ -273,30 +306,31 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
                 }
                 let turns = Mode {
                     direction: mode.direction,
-                    ..self.mode(from + after, there.motion)
+                    ..self.mode(&end.load, there.motion)
                 } == mode;
                 let ends = [before, [after, there.motion.speed]];
                 let middle = match turns {
                     true => next_look(ends, near * 2.0f64.powi(LOOKS - 1 - look), left),
                     false => 0.5 * (before[0] + after),
                 };
-                let tried = self.step::<LEDGER>(flow, from, middle, mode);
-                if self.mode(from + middle, tried.motion) == mode {
+                let (tried, then) = self.step::<LEDGER>(flow, &from, middle, mode);
+                if self.mode(&then.load, tried.motion) == mode {
                     before = [middle, tried.motion.speed];
                 } else {
-                    (after, there) = (middle, tried);
+                    (after, there, end) = (middle, tried, then);
                 }
             }
-            self.accept(flow, there, [from, after]);
-            from += after;
+            self.accept(flow, there, [from.time, after]);
+            from = end;
             left -= after;
             if left <= 0.0 {
-                return;
+                return end;
             }
         }
-        let mode = self.mode(from, flow.motion);
-        let rest = self.step::<LEDGER>(flow, from, left, mode);
-        self.accept(flow, rest, [from, left]);
+        let mode = self.mode(&from.load, flow.motion);
+        let (rest, end) = self.step::<LEDGER>(flow, &from, left, mode);
+        self.accept(flow, rest, [from.time, left]);
+        end
     }
 
     fn accept(&mut self, flow: &mut Flow, next: Flow, [start, length]: [f64; 2]) {
@@ -312,7 +346,7 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
         *flow = next;
     }
 
-    fn mode(&self, time: f64, motion: PistonMotion) -> Mode {
+    fn mode(&self, now: &L::Now, motion: PistonMotion) -> Mode {
         if !L::MOVES {
             return Mode {
                 touching: false,
@@ -323,7 +357,7 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
         }
         let dry = self.device.parameters().seal_friction.is_dry();
         Mode {
-            touching: self.load.touches(time, motion),
+            touching: self.load.touches(now, motion),
             stop: self.device.stop_at(motion),
             cushion: self.device.cushion_at(motion),
             direction: if dry { motion.speed.signum() as i8 } else { 0 },
@@ -331,29 +365,68 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
     }
 
     /// Pressure at the regulator's outlet at a time in the step [Pa gauge].
-    pub(super) fn outlet(&self, time: f64) -> f64 {
+    fn outlet(&self, time: f64) -> f64 {
         self.trajectory.at(time - self.trajectory_start) + self.disturbance.outlet
     }
 
-    /// One Runge-Kutta step.
-    fn step<const LEDGER: bool>(&self, start: &Flow, time: f64, h: f64, mode: Mode) -> Flow {
-        if let Some(hose) = &self.device.parameters().hose {
-            return self.line_step::<LEDGER>(hose, start, time, h, mode);
+    /// What is outside at a time in the step.
+    pub(super) fn outside(&self, time: f64) -> Outside<L::Now> {
+        Outside {
+            time,
+            outlet: self.outlet(time),
+            load: self.load.now(time),
         }
-        let outlet = |t: f64| self.outlet(t);
-        let (first, middle, last) = (outlet(time), outlet(time + 0.5 * h), outlet(time + h));
-        let rates = |flow: &Flow, t: f64, outlet: f64| {
-            self.rates::<LEDGER>(flow, start.motion.stroke, t, outlet, mode)
+    }
+
+    /// What is outside in the middle and at the end of a sub-step.
+    fn ahead(&self, start: &Outside<L::Now>, h: f64) -> [Outside<L::Now>; 2] {
+        let added = self.disturbance.outlet;
+        let since = start.time - self.trajectory_start;
+        let outlets = (self.trajectory).ahead(start.outlet - added, since, h);
+        let times = [start.time + 0.5 * h, start.time + h];
+        [0, 1].map(|i| Outside {
+            time: times[i],
+            outlet: outlets[i] + added,
+            load: self.load.now(times[i]),
+        })
+    }
+
+    /// One step: the flow at its end, and what is outside then.
+    fn step<const LEDGER: bool>(
+        &self,
+        start: &Flow,
+        from: &Outside<L::Now>,
+        h: f64,
+        mode: Mode,
+    ) -> (Flow, Outside<L::Now>) {
+        match &self.device.parameters().hose {
+            None => self.runge_kutta_step::<LEDGER>(start, from, h, mode),
+            Some(hose) => self.line_step::<LEDGER>(hose, start, from, h, mode),
+        }
+    }
+
+    /// One Runge-Kutta step.
+    fn runge_kutta_step<const LEDGER: bool>(
+        &self,
+        start: &Flow,
+        from: &Outside<L::Now>,
+        h: f64,
+        mode: Mode,
+    ) -> (Flow, Outside<L::Now>) {
+        let [middle, end] = self.ahead(from, h);
+        let rates = |flow: &Flow, at: &Outside<L::Now>| {
+            self.rates::<LEDGER>(flow, start.motion.stroke, at, mode)
         };
-        let k1 = rates(start, time, first);
-        let k2 = rates(&start.after(&k1, 0.5 * h, false), time + 0.5 * h, middle);
-        let k3 = rates(&start.after(&k2, 0.5 * h, false), time + 0.5 * h, middle);
-        let k4 = rates(&start.after(&k3, h, false), time + h, last);
-        start
+        let k1 = rates(start, from);
+        let k2 = rates(&start.after(&k1, 0.5 * h, false), &middle);
+        let k3 = rates(&start.after(&k2, 0.5 * h, false), &middle);
+        let k4 = rates(&start.after(&k3, h, false), &end);
+        let flow = start
             .after(&k1, h / 6.0, LEDGER)
             .after(&k2, h / 3.0, LEDGER)
             .after(&k3, h / 3.0, LEDGER)
-            .after(&k4, h / 6.0, LEDGER)
+            .after(&k4, h / 6.0, LEDGER);
+        (flow, end)
     }
 
     /// Rates of everything; `substep_stroke` [m] is where the sub-step began, with the seals at `self.deflection`.
@@ -361,8 +434,7 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
         &self,
         flow: &Flow,
         substep_stroke: f64,
-        time: f64,
-        outlet: f64,
+        at: &Outside<L::Now>,
         mode: Mode,
     ) -> Flow {
         let device = self.device;
@@ -372,7 +444,7 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
         let air = device.air_rates::<LEDGER>(
             &flow.air,
             self.valve,
-            atmosphere + outlet,
+            atmosphere + at.outlet,
             motion,
             &self.disturbance,
         );
@@ -400,7 +472,7 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
             let stop = device.stop_force_of(mode.stop, motion);
             let cushion = device.cushion_force_of(mode.cushion, motion);
             let axial = device.axial_force(motion.stroke);
-            let load = self.load.force(time, motion, mode.touching);
+            let load = self.load.force(&at.load, motion, mode.touching);
             let force = gas_force - seal + stop + cushion + axial + load;
             rates.motion.speed = force / parameters.moving_mass;
             if LEDGER {
@@ -409,7 +481,7 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
                 rates.ledger.cushion_work = -cushion * motion.speed;
                 rates.ledger.axial_work = axial * motion.speed;
                 rates.ledger.load_work = load * motion.speed;
-                rates.impulses.load = self.load.contact(time, motion, mode.touching);
+                rates.impulses.load = self.load.contact(&at.load, motion, mode.touching);
             }
         }
         if LEDGER {

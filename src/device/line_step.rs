@@ -7,7 +7,7 @@
 use std::borrow::Borrow;
 
 use super::DeviceParameters;
-use super::integrate::{Flow, Mode, Surroundings};
+use super::integrate::{Flow, Mode, Outside, Surroundings};
 use super::load::Load;
 use super::state::AirState;
 use crate::physics::flow_slope::FlowSlope;
@@ -79,16 +79,18 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
         &self,
         hose: &Hose,
         start: &Flow,
-        time: f64,
+        from: &Outside<L::Now>,
         h: f64,
         mode: Mode,
-    ) -> Flow {
+    ) -> (Flow, Outside<L::Now>) {
         let mut rates = [*start; 6];
+        let mut at = *from;
         let mut feed = Feed::of(&start.air);
         let upstream = hose.segments() - 1;
         for stage in 0..6 {
-            let at = time + NODES[stage] * h;
-            let outlet = self.outlet(at);
+            if stage > 0 {
+                at = self.outside(from.time + NODES[stage] * h);
+            }
             let mut flow = *start;
             let mut held = Feed::of(&start.air);
             for earlier in 0..stage {
@@ -102,10 +104,10 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
             }
             if stage > 0 {
                 let share = h * IMPLICIT_SHARE;
-                feed = self.feed(hose, &flow, outlet, (held, share));
+                feed = self.feed(hose, &flow, at.outlet, (held, share));
             }
             feed.put(&mut flow.air);
-            rates[stage] = self.rates::<LEDGER>(&flow, start.motion.stroke, at, outlet, mode);
+            rates[stage] = self.rates::<LEDGER>(&flow, start.motion.stroke, &at, mode);
         }
         let weights = IMPLICIT[5].iter().chain([&IMPLICIT_SHARE]);
         let mut end = *start;
@@ -119,7 +121,7 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
         }
         feed.put(&mut end.air);
         end.air.entered += end.air.line_mass() - summed;
-        end
+        (end, at)
     }
 }
 

@@ -17,17 +17,23 @@ pub trait Load {
     /// Whether the piston moves under the force. If not, it keeps its speed.
     const MOVES: bool = true;
 
+    /// What of the load depends on time alone: looked at once for all that is asked of one time.
+    type Now: Copy;
+
+    /// It at a time [s].
+    fn now(&self, time: f64) -> Self::Now;
+
     /// Force along extension from outside the device [N]: weight, contact, hand. `touching` holds the contact as it was found by `touches`
     /// for the whole of a sub-step, so that the law is smooth in it.
-    fn force(&self, time: f64, motion: PistonMotion, touching: bool) -> f64;
+    fn force(&self, now: &Self::Now, motion: PistonMotion, touching: bool) -> f64;
 
     /// Share of `force` [N] that the contact takes, positive against extension.
-    fn contact(&self, _time: f64, _motion: PistonMotion, _touching: bool) -> f64 {
+    fn contact(&self, _now: &Self::Now, _motion: PistonMotion, _touching: bool) -> f64 {
         0.0
     }
 
     /// Whether the contact pushes on the piston.
-    fn touches(&self, time: f64, motion: PistonMotion) -> bool;
+    fn touches(&self, now: &Self::Now, motion: PistonMotion) -> bool;
 
     /// Takes note of a sub-step that is done: its start and length [s], the motion at both ends.
     fn note(&self, _start: f64, _length: f64, _ends: [PistonMotion; 2]) {}
@@ -52,11 +58,15 @@ pub(super) struct Predicted;
 impl Load for Predicted {
     const MOVES: bool = false;
 
-    fn force(&self, _: f64, _: PistonMotion, _: bool) -> f64 {
+    type Now = ();
+
+    fn now(&self, _: f64) {}
+
+    fn force(&self, (): &(), _: PistonMotion, _: bool) -> f64 {
         0.0
     }
 
-    fn touches(&self, _: f64, _: PistonMotion) -> bool {
+    fn touches(&self, (): &(), _: PistonMotion) -> bool {
         false
     }
 

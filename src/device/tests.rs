@@ -14,11 +14,15 @@ use crate::physics::valve::ValvePosition;
 struct Alone;
 
 impl Load for Alone {
-    fn force(&self, _: f64, _: PistonMotion, _: bool) -> f64 {
+    type Now = ();
+
+    fn now(&self, _: f64) {}
+
+    fn force(&self, (): &(), _: PistonMotion, _: bool) -> f64 {
         0.0
     }
 
-    fn touches(&self, _: f64, _: PistonMotion) -> bool {
+    fn touches(&self, (): &(), _: PistonMotion) -> bool {
         false
     }
 

@@ -58,6 +58,21 @@ impl Touch {
     }
 }
 
+/// What of a load depends on time alone.
+#[derive(Debug, Clone, Copy)]
+pub struct LoadNow {
+    /// Since the start of the step [s].
+    time: f64,
+    /// Axial force along extension [N].
+    axial: f64,
+    /// Stroke at which the slide is held for the touches' penetration [m], and its rate [m/s].
+    stroke: f64,
+    speed: f64,
+    /// Deviation of the surface [m] and its rate [m/s].
+    deviation: f64,
+    deviation_rate: f64,
+}
+
 /// Load on a piston over a step.
 #[derive(Debug, Clone, Copy)]
 pub struct PistonLoad<'a> {
@@ -122,15 +137,13 @@ impl<'a> PistonLoad<'a> {
     }
 
     /// Penetration [m] and its rate [m/s] at a touch.
-    fn penetration(&self, touch: &Touch, time: f64, motion: PistonMotion) -> (f64, f64) {
-        let (deviation, rate) = self.contact.deviation(self.start + time);
-        let moved = motion.stroke - self.stroke.at(time);
-        let speed = motion.speed - self.stroke.rate(time);
-        let approach = touch.share * speed;
+    fn penetration(touch: &Touch, now: &LoadNow, motion: PistonMotion) -> (f64, f64) {
+        let moved = motion.stroke - now.stroke;
+        let approach = touch.share * (motion.speed - now.speed);
         (
-            touch.penetration + time * touch.rate + touch.share * moved - deviation,
+            touch.penetration + now.time * touch.rate + touch.share * moved - now.deviation,
             match touch.damped {
-                true => touch.rate + approach - rate,
+                true => touch.rate + approach - now.deviation_rate,
                 false => approach,
             },
         )
@@ -138,7 +151,12 @@ impl<'a> PistonLoad<'a> {
 
     /// Force at a touch [N].
     pub fn normal_force(&self, touch: &Touch, time: f64, motion: PistonMotion) -> f64 {
-        let (penetration, rate) = self.penetration(touch, time, motion);
+        self.touch_force(touch, &self.now(time), motion)
+    }
+
+    /// Force at a touch [N].
+    fn touch_force(&self, touch: &Touch, now: &LoadNow, motion: PistonMotion) -> f64 {
+        let (penetration, rate) = Self::penetration(touch, now, motion);
         match penetration > 0.0 {
             true => self.pushing(penetration, rate).max(0.0),
             false => 0.0,
@@ -152,8 +170,12 @@ impl<'a> PistonLoad<'a> {
 
     /// Force of the tool on the workpiece, of all touches [N].
     pub fn contact_force(&self, time: f64, motion: PistonMotion) -> f64 {
+        if self.touches.is_empty() {
+            return 0.0;
+        }
+        let now = self.now(time);
         let forces = self.touches.iter();
-        let forces = forces.map(|touch| self.normal_force(touch, time, motion));
+        let forces = forces.map(|touch| self.touch_force(touch, &now, motion));
         forces.fold(0.0, |sum, force| sum + force)
     }
 
@@ -205,37 +227,52 @@ impl<'a> PistonLoad<'a> {
 }
 
 impl Load for PistonLoad<'_> {
-    fn force(&self, time: f64, motion: PistonMotion, touching: bool) -> f64 {
-        let mut force = self.axial.at(time);
-        if let Some(hold) = &self.hold {
-            force += hold.force(time, motion);
+    type Now = LoadNow;
+
+    #[inline]
+    fn now(&self, time: f64) -> LoadNow {
+        let (deviation, deviation_rate) = self.contact.deviation(self.start + time);
+        LoadNow {
+            time,
+            axial: self.axial.at(time),
+            stroke: self.stroke.at(time),
+            speed: self.stroke.rate(time),
+            deviation,
+            deviation_rate,
         }
-        force += self.term_force(time, motion);
+    }
+
+    fn force(&self, now: &LoadNow, motion: PistonMotion, touching: bool) -> f64 {
+        let mut force = now.axial;
+        if let Some(hold) = &self.hold {
+            force += hold.force(now.time, motion);
+        }
+        force += self.term_force(now.time, motion);
         if touching {
-            force -= self.contact(time, motion, touching);
+            force -= self.contact(now, motion, touching);
             force -= self.friction.at(motion.stroke);
         }
         force
     }
 
-    fn contact(&self, time: f64, motion: PistonMotion, touching: bool) -> f64 {
+    fn contact(&self, now: &LoadNow, motion: PistonMotion, touching: bool) -> f64 {
         match self.touches {
             _ if !touching => 0.0,
             // As it holds while it pushes, so that the law is smooth over a sub-step.
             [touch] => {
-                let (penetration, rate) = self.penetration(touch, time, motion);
+                let (penetration, rate) = Self::penetration(touch, now, motion);
                 self.axial_share(touch) * self.pushing(penetration, rate)
             }
             several => several
                 .iter()
-                .map(|touch| self.axial_share(touch) * self.normal_force(touch, time, motion))
+                .map(|touch| self.axial_share(touch) * self.touch_force(touch, now, motion))
                 .sum(),
         }
     }
 
-    fn touches(&self, time: f64, motion: PistonMotion) -> bool {
+    fn touches(&self, now: &LoadNow, motion: PistonMotion) -> bool {
         self.touches.iter().any(|touch| {
-            let (penetration, rate) = self.penetration(touch, time, motion);
+            let (penetration, rate) = Self::penetration(touch, now, motion);
             penetration > 0.0 && self.pushing(penetration, rate) > 0.0
         })
     }
@@ -245,9 +282,10 @@ impl Load for PistonLoad<'_> {
             return;
         }
         self.note_force(start + length, to);
+        let (begins, ends) = (self.now(start), self.now(start + length));
         let turns = |touch: &Touch| {
-            let before = self.penetration(touch, start, from).1;
-            before > 0.0 && self.penetration(touch, start + length, to).1 < 0.0
+            let before = Self::penetration(touch, &begins, from).1;
+            before > 0.0 && Self::penetration(touch, &ends, to).1 < 0.0
         };
         if self.touches.iter().any(turns) {
             // The force culminates in between.

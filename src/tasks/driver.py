@@ -85,7 +85,7 @@ class Work:
         self.waiting = {}
         self.lost = set()
         self.ready = deque()
-        self.alone = deque()
+        self.halves = deque()
         self.seconds = None
         self.done = 0
         self.shared = None
@@ -116,8 +116,8 @@ class Work:
 
     def batch(self):
         """Tasks that one process does one after the other: as many as take a while together, by the time of those before."""
-        if self.alone:
-            return [self.alone.popleft()]
+        if self.halves:
+            return self.halves.popleft()
         size = min(max(int(LONG / self.seconds), 1), MOST) if self.seconds else 1
         tasks = []
         while len(tasks) < size and (task := self.next()):
@@ -125,7 +125,8 @@ class Work:
         return tasks
 
     async def submit(self, batch):
-        options = {"retries": TRIES - 1, "pure": False}
+        # A batch that is lost is halved: only a task by itself is worth more tries.
+        options = {"retries": TRIES - 1 if len(batch) == 1 else 0, "pure": False}
         if not self.carry:
             names = [task["id"] for task, _ in batch]
             return self.client.submit(perform, self.program, self.plan, names, **options)
@@ -172,16 +173,19 @@ class Work:
             if code not in RESULTS or all(self.stands(task["id"]) for task, _ in batch):
                 break
             await asyncio.sleep(0.1)
+        left = []
         for task, line in batch:
             # Also a worker that was lost may have put its result in place before.
             if self.stands(task["id"]):
                 self.done += 1
                 self.ready.extend(self.waiting.pop(task["id"], []))
             elif len(batch) > 1:
-                # Which of them it was, and why, is seen of each by itself.
-                self.alone.append((task, line))
+                left.append((task, line))
             else:
                 self.fail(task["id"], message.splitlines()[-1] if message else f"exit code {code}")
+        # Which of them it was, and why, is found by halves.
+        middle = (len(left) + 1) // 2
+        self.halves.extend(half for half in (left[:middle], left[middle:]) if half)
         say(done=self.done)
 
 

@@ -139,7 +139,11 @@ impl Outside {
 }
 
 impl Load for Outside {
-    fn force(&self, _: f64, motion: PistonMotion, touching: bool) -> f64 {
+    type Now = ();
+
+    fn now(&self, _: f64) {}
+
+    fn force(&self, (): &(), motion: PistonMotion, touching: bool) -> f64 {
         let load = match self.load {
             Some((position, law)) if touching => law.linear(motion.stroke - position, motion.speed),
             _ => 0.0,
@@ -147,7 +151,7 @@ impl Load for Outside {
         self.force - load
     }
 
-    fn touches(&self, _: f64, motion: PistonMotion) -> bool {
+    fn touches(&self, (): &(), motion: PistonMotion) -> bool {
         self.load
             .is_some_and(|(position, law)| law.pushes(motion.stroke - position, motion.speed))
     }

@@ -135,13 +135,17 @@ struct Counting {
 }
 
 impl Load for Counting {
-    fn force(&self, time: f64, motion: PistonMotion, touching: bool) -> f64 {
+    type Now = ();
+
+    fn now(&self, _: f64) {}
+
+    fn force(&self, now: &(), motion: PistonMotion, touching: bool) -> f64 {
         self.asked.set(self.asked.get() + 1);
-        self.outside.force(time, motion, touching)
+        self.outside.force(now, motion, touching)
     }
 
-    fn touches(&self, time: f64, motion: PistonMotion) -> bool {
-        self.outside.touches(time, motion)
+    fn touches(&self, now: &(), motion: PistonMotion) -> bool {
+        self.outside.touches(now, motion)
     }
 
     fn rate(&self) -> f64 {

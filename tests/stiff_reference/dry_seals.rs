@@ -51,11 +51,15 @@ impl ODE<f64, [f64; 5]> for Rubbing<'_> {
 struct Free;
 
 impl Load for Free {
-    fn force(&self, _: f64, _: PistonMotion, _: bool) -> f64 {
+    type Now = ();
+
+    fn now(&self, _: f64) {}
+
+    fn force(&self, (): &(), _: PistonMotion, _: bool) -> f64 {
         0.0
     }
 
-    fn touches(&self, _: f64, _: PistonMotion) -> bool {
+    fn touches(&self, (): &(), _: PistonMotion) -> bool {
         false
     }
 

@@ -78,13 +78,17 @@ struct Counting {
 }
 
 impl Load for Counting {
-    fn force(&self, _: f64, motion: PistonMotion, touching: bool) -> f64 {
+    type Now = ();
+
+    fn now(&self, _: f64) {}
+
+    fn force(&self, (): &(), motion: PistonMotion, touching: bool) -> f64 {
         self.asked.set(self.asked.get() + 1);
         let push = -LOAD.linear(motion.stroke - POSITION, motion.speed);
         if touching { push } else { 0.0 }
     }
 
-    fn touches(&self, _: f64, motion: PistonMotion) -> bool {
+    fn touches(&self, (): &(), motion: PistonMotion) -> bool {
         LOAD.pushes(motion.stroke - POSITION, motion.speed)
     }
 

@@ -85,15 +85,21 @@ struct SurfaceLoad {
 }
 
 impl SurfaceLoad {
-    fn penetration(&self, time: f64, motion: PistonMotion) -> (f64, f64) {
-        let (position, speed) = self.surface.motion(self.time + time);
+    /// Penetration [m] and its rate [m/s] into a surface at a place that moves.
+    fn penetration((position, speed): (f64, f64), motion: PistonMotion) -> (f64, f64) {
         (motion.stroke - position, motion.speed - speed)
     }
 }
 
 impl Load for SurfaceLoad {
-    fn force(&self, time: f64, motion: PistonMotion, touching: bool) -> f64 {
-        let (penetration, rate) = self.penetration(time, motion);
+    type Now = (f64, f64);
+
+    fn now(&self, time: f64) -> Self::Now {
+        self.surface.motion(self.time + time)
+    }
+
+    fn force(&self, now: &Self::Now, motion: PistonMotion, touching: bool) -> f64 {
+        let (penetration, rate) = Self::penetration(*now, motion);
         if touching {
             -CONTACT.linear(penetration, rate)
         } else {
@@ -101,8 +107,8 @@ impl Load for SurfaceLoad {
         }
     }
 
-    fn touches(&self, time: f64, motion: PistonMotion) -> bool {
-        let (penetration, rate) = self.penetration(time, motion);
+    fn touches(&self, now: &Self::Now, motion: PistonMotion) -> bool {
+        let (penetration, rate) = Self::penetration(*now, motion);
         CONTACT.pushes(penetration, rate)
     }
 
@@ -240,7 +246,8 @@ impl Bench {
         let dt = self.period / f64::from(pieces);
         let before = self.motion.speed;
         let pressed = |load: &SurfaceLoad, time: f64, motion: PistonMotion| {
-            -load.force(time, motion, load.touches(time, motion))
+            let now = load.now(time);
+            -load.force(&now, motion, load.touches(&now, motion))
         };
         let mut sum = 0.0;
         for i in 0..pieces {

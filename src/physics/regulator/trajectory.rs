@@ -37,6 +37,20 @@ impl OutletTrajectory {
         }
     }
 
+    /// Outlet pressures, gauge [Pa], half a time `step` [s] and all of it after the time `since` its start [s] at which it is `now` [Pa]; of a lag with one
+    /// exponential.
+    #[inline]
+    pub fn ahead(&self, now: f64, since: f64, step: f64) -> [f64; 2] {
+        match self.law {
+            Law::Lag { rate } => {
+                let decay = (-0.5 * step * rate).exp();
+                let deviation = (now - self.target) * decay;
+                [self.target + deviation, self.target + deviation * decay]
+            }
+            _ => [self.at(since + 0.5 * step), self.at(since + step)],
+        }
+    }
+
     /// Outlet pressure at its start, gauge [Pa].
     #[inline]
     pub fn start(&self) -> f64 {
