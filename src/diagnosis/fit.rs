@@ -29,6 +29,11 @@ const FINE_STEP: f64 = 0.003;
 /// Gain below which a fit has come to its end, in units of a sum of squares [1].
 const LEAST_GAIN: f64 = 0.05;
 
+/// Share of its promise that a step by earlier derivatives must gain: one that gains less asks for new ones.
+const KEPT_PROMISE: f64 = 0.7;
+/// Steps by the same derivatives at most, beside the first.
+const MOST_CHORDS: usize = 3;
+
 /// Tries of a shorter step before an iteration is given up.
 const MOST_TRIES: usize = 8;
 
@@ -412,42 +417,105 @@ struct Walk<'a, S: Subject> {
 }
 
 impl<S: Subject> Walk<'_, S> {
-    /// One iteration from where the cost is `before`: steps more and more damped, until one gains or none promises to. Returns the gain.
-    fn iterate(
-        &mut self,
-        weighing: &Weighing<'_>,
-        before: f64,
-        normal: &DMatrix<f64>,
-        gradient: &DVector<f64>,
-    ) -> f64 {
+    /// Steps more and more damped, until one gains or none promises to. Returns the gain.
+    fn iterate(&mut self, iteration: &Iteration<'_>) -> f64 {
         for _ in 0..MOST_TRIES {
-            let tried = step(
-                self.free,
-                &self.values,
-                normal,
-                gradient,
-                self.damping,
-                self.longest_step,
-            );
-            let Some((tried, promised)) = tried else {
+            let Some((tried, promised)) = self.step(iteration) else {
                 self.damping *= 10.0;
                 continue;
             };
             if promised < LEAST_GAIN {
                 break;
             }
-            let plant = with_values(&self.here.plant, self.free, &tried);
-            let there = (self.evidence).predict(&plant, self.here.guided, Some(&self.here));
-            let prior = prior_sum(self.free, &tried);
-            let after = weighing.sum(&there.residuals) + prior;
-            if after < before {
-                (self.values, self.here, self.prior) = (tried, there, prior);
+            let gain = self.try_step(iteration, tried, 0.0);
+            if gain > 0.0 {
                 self.damping = (self.damping * 0.1).max(1e-6);
-                return before - after;
+                return gain;
             }
             self.damping *= 10.0;
         }
         0.0
+    }
+
+    /// One step by derivatives of an earlier place, taken if it keeps its promise; none where it promises less than `enough`.
+    fn chord(&mut self, iteration: &Iteration<'_>, enough: f64) -> Chord {
+        match self.step(iteration) {
+            Some((_, promised)) if promised < enough => Chord::Ends,
+            Some((tried, promised)) => {
+                match self.try_step(iteration, tried, KEPT_PROMISE * promised) > 0.0 {
+                    true => Chord::Gains,
+                    false => Chord::Fails,
+                }
+            }
+            None => Chord::Fails,
+        }
+    }
+
+    fn step(&self, iteration: &Iteration<'_>) -> Option<(Vec<f64>, f64)> {
+        step(
+            self.free,
+            &self.values,
+            &iteration.normal,
+            &iteration.gradient,
+            self.damping,
+            self.longest_step,
+        )
+    }
+
+    /// Goes to values that gain more than `least`; gives the gain, 0 where it stays.
+    fn try_step(&mut self, iteration: &Iteration<'_>, tried: Vec<f64>, least: f64) -> f64 {
+        let plant = with_values(&self.here.plant, self.free, &tried);
+        let there = (self.evidence).predict(&plant, self.here.guided, Some(&self.here));
+        let prior = prior_sum(self.free, &tried);
+        let gain = iteration.before - (iteration.weighing.sum(&there.residuals) + prior);
+        if gain > least {
+            (self.values, self.here, self.prior) = (tried, there, prior);
+            return gain;
+        }
+        0.0
+    }
+}
+
+/// What a step by earlier derivatives came to.
+enum Chord {
+    /// It gains about what it promised.
+    Gains,
+    /// It promises no more than ends a stage.
+    Ends,
+    /// It gains less than it promised.
+    Fails,
+}
+
+/// The least squares about where a fit is.
+struct Iteration<'a> {
+    weighing: Weighing<'a>,
+    /// Cost there [1].
+    before: f64,
+    normal: DMatrix<f64>,
+    gradient: DVector<f64>,
+}
+
+impl<'a> Iteration<'a> {
+    /// Of a fit with its derivatives, by samples of these shares, their loss bounded or not.
+    fn of<S: Subject>(
+        walk: &Walk<'_, S>,
+        columns: &[Vec<f64>],
+        (shares, bounded): (&'a [f64], bool),
+    ) -> Self {
+        let residuals = &walk.here.residuals;
+        let weighing = Weighing {
+            shares,
+            limit: limit_for(residuals, shares),
+            bounded,
+        };
+        let (normal, gradient) =
+            normal_equations(columns, residuals, &weighing, walk.free, &walk.values);
+        Self {
+            before: weighing.sum(residuals) + walk.prior,
+            weighing,
+            normal,
+            gradient,
+        }
     }
 }
 
@@ -472,7 +540,9 @@ pub fn fit<S: Subject>(
     let mut information = DMatrix::zeros(free.len(), free.len());
     let mut columns: Vec<Vec<f64>> = frozen.to_vec();
     let mut left = limit.iterations;
-    for &Stage {
+    // Whether the piston was held when the derivatives were found, and whether the fit has moved since.
+    let (mut derived, mut moved) = (None, false);
+    'stages: for &Stage {
         forgiven,
         guided,
         bounded,
@@ -484,27 +554,32 @@ pub fn fit<S: Subject>(
         }
         let shares = evidence.shares(forgiven, guided);
         while left > 0 {
+            if derived == Some(guided) && moved {
+                for _ in 0..MOST_CHORDS {
+                    let iteration = Iteration::of(&walk, &columns, (&shares, bounded));
+                    let enough = LEAST_GAIN.max(least * iteration.before);
+                    let chord = walk.chord(&iteration, enough);
+                    information = iteration.normal;
+                    match chord {
+                        Chord::Ends if least > 0.0 => continue 'stages,
+                        Chord::Gains => (),
+                        Chord::Ends | Chord::Fails => break,
+                    }
+                }
+            }
             left -= 1;
-            columns.truncate(frozen.len());
-            columns.extend(jacobian(
-                evidence,
-                &walk.here,
-                free,
-                &walk.values,
-                frozen.len(),
-            ));
-            let residuals = &walk.here.residuals;
-            let weighing = Weighing {
-                shares: &shares,
-                limit: limit_for(residuals, &shares),
-                bounded,
-            };
-            let before = weighing.sum(residuals) + walk.prior;
-            let (normal, gradient) =
-                normal_equations(&columns, residuals, &weighing, free, &walk.values);
-            let gain = walk.iterate(&weighing, before, &normal, &gradient);
-            information = normal;
-            if gain < LEAST_GAIN.max(least * before) {
+            if derived != Some(guided) || moved {
+                columns.truncate(frozen.len());
+                let values = &walk.values;
+                let open = jacobian(evidence, &walk.here, free, values, frozen.len());
+                columns.extend(open);
+                (derived, moved) = (Some(guided), false);
+            }
+            let iteration = Iteration::of(&walk, &columns, (&shares, bounded));
+            let gain = walk.iterate(&iteration);
+            moved |= gain > 0.0;
+            information = iteration.normal;
+            if gain < LEAST_GAIN.max(least * iteration.before) {
                 break;
             }
         }

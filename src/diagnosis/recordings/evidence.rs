@@ -129,8 +129,9 @@ impl<S: Subject> Evidence<S> {
             let known = known.map(|known| (&known.plant, &known.trajectories[index]));
             S::simulate(plant, &measured.inputs, measured.free, guide, known)
         };
-        let trajectories: Vec<S::Simulated> =
-            self.recordings.iter().enumerate().map(simulated).collect();
+        let trajectories: Vec<S::Simulated> = (self.recordings.par_iter().enumerate())
+            .map(simulated)
+            .collect();
         Prediction {
             plant: plant.clone(),
             guided,
