@@ -15,6 +15,10 @@ const LEAST_SAMPLES: usize = 50;
 const SPACING: f64 = 0.025;
 /// Those looked at, in that distance, beside those at which the tool is known to turn.
 const INDICES: Range<usize> = 20..4000;
+/// Consecutive frequencies that are gone through by turning each sample's phase on: rounding adds up over so many.
+const TURNED_ON: usize = 64;
+/// Samples that are taken together.
+const LANES: usize = 4;
 
 /// Gain in a sum of squares by phases of their own beyond which the recordings' phases differ: far beyond what noise gains by one phase a recording [1].
 const GAIN_OF_PHASES: f64 = 50.0;
@@ -37,8 +41,9 @@ pub struct Line {
 pub fn strongest(evidence: &Evidence, prediction: &Prediction) -> Vec<Line> {
     let of_tool = |frequency: f64| tool_turns_at(&prediction.plant, frequency);
     let left = Left::of(evidence, prediction, Channel::Force as usize);
-    let own: Vec<Line> = left.with_phases(of_tool);
-    let peaks = left.peaks(coherent);
+    let spectrum = left.spectrum();
+    let own: Vec<Line> = left.with_phases(&spectrum, of_tool);
+    let peaks = peaks(&spectrum, coherent);
     let lines = peaks.into_iter().map(|frequency| Line {
         frequency,
         phases: Vec::new(),
@@ -55,7 +60,8 @@ pub fn strongest(evidence: &Evidence, prediction: &Prediction) -> Vec<Line> {
 
 /// Frequencies [Hz] of the periodic parts of what is left in a channel, strongest first; of the force while touching alone.
 pub fn strongest_in(evidence: &Evidence, prediction: &Prediction, channel: usize) -> Vec<f64> {
-    Left::of(evidence, prediction, channel).peaks(coherent)
+    let left = Left::of(evidence, prediction, channel);
+    peaks(&left.spectrum(), coherent)
 }
 
 /// What is left in a channel, of the force while touching alone, by recording: time [s] and value, outliers clipped [standard deviations].
@@ -69,6 +75,69 @@ struct Left {
 
 /// Sum of sines and cosines over a recording: real and imaginary part.
 type Sum = [f64; 2];
+
+/// Frequencies [Hz], each with the sums of all recordings.
+type Spectrum = Vec<(f64, Vec<Sum>)>;
+
+/// Samples at a frequency, with their phasors and what turns them on to the next frequency.
+struct Turning {
+    value: [f64; LANES],
+    phasor: [[f64; LANES]; 2],
+    turn: [[f64; LANES]; 2],
+}
+
+impl Turning {
+    /// Those of a recording, their mean taken off, at a frequency [Hz].
+    fn all(recording: &[[f64; 2]], mean: f64, frequency: f64) -> Vec<Self> {
+        let together = recording.chunks(LANES).map(|samples| {
+            let mut turning = Self {
+                value: [0.0; LANES],
+                phasor: [[0.0; LANES]; 2],
+                turn: [[0.0; LANES]; 2],
+            };
+            for (lane, [time, value]) in samples.iter().enumerate() {
+                turning.value[lane] = value - mean;
+                let (sin, cos) = (TAU * frequency * time).sin_cos();
+                (turning.phasor[0][lane], turning.phasor[1][lane]) = (cos, sin);
+                let (sin, cos) = (TAU * SPACING * time).sin_cos();
+                (turning.turn[0][lane], turning.turn[1][lane]) = (cos, sin);
+            }
+            turning
+        });
+        together.collect()
+    }
+
+    /// The sum at their frequency; they go on to the next.
+    fn sum_and_turn(samples: &mut [Self]) -> Sum {
+        let mut sum = [[0.0; LANES]; 2];
+        for Self {
+            value,
+            phasor: [cosines, sines],
+            turn,
+        } in samples
+        {
+            for lane in 0..LANES {
+                let (cos, sin) = (cosines[lane], sines[lane]);
+                sum[0][lane] += value[lane] * cos;
+                sum[1][lane] += value[lane] * sin;
+                cosines[lane] = cos * turn[0][lane] - sin * turn[1][lane];
+                sines[lane] = sin * turn[0][lane] + cos * turn[1][lane];
+            }
+        }
+        sum.map(|lanes| lanes.iter().sum())
+    }
+}
+
+/// Frequencies [Hz] at which a power has its peaks, the highest first.
+fn peaks(spectrum: &Spectrum, power: impl Fn(&[Sum]) -> f64) -> Vec<f64> {
+    let powers: Vec<f64> = spectrum.iter().map(|(_, sums)| power(sums)).collect();
+    let mut peaks: Vec<(f64, f64)> = (1..powers.len().saturating_sub(1))
+        .filter(|&i| powers[i] > powers[i - 1] && powers[i] >= powers[i + 1])
+        .map(|i| (powers[i], spectrum[i].0))
+        .collect();
+    peaks.sort_by(|a, b| b.0.total_cmp(&a.0));
+    peaks.into_iter().map(|(_, frequency)| frequency).collect()
+}
 
 /// Power with the same phase in all recordings.
 fn coherent(sums: &[Sum]) -> f64 {
@@ -124,30 +193,36 @@ impl Left {
         self.recordings.iter().map(of).collect()
     }
 
-    /// Frequencies [Hz] at which a power has its peaks, the highest first.
-    fn peaks(&self, power: impl Fn(&[Sum]) -> f64 + Sync) -> Vec<f64> {
+    /// Sums of all recordings at all frequencies that are looked at; none of too few samples.
+    fn spectrum(&self) -> Spectrum {
         if self.count < LEAST_SAMPLES {
-            return vec![];
+            return Spectrum::new();
         }
         let [from, to] = self.turns.map(|end| (end / SPACING) as usize);
         let above = from.max(INDICES.end)..to.max(INDICES.end);
-        let indices = INDICES.chain(above);
-        let frequencies: Vec<f64> = indices.map(|i| i as f64 * SPACING).collect();
-        let powers: Vec<f64> = frequencies
-            .par_iter()
-            .map(|f| power(&self.sums(*f)))
+        let starts = [INDICES, above].map(|range| (range.end, range.step_by(TURNED_ON)));
+        let runs: Vec<Range<usize>> = (starts.into_iter())
+            .flat_map(|(end, starts)| starts.map(move |from| from..end.min(from + TURNED_ON)))
             .collect();
-        let mut peaks: Vec<(f64, f64)> = (1..powers.len() - 1)
-            .filter(|&i| powers[i] > powers[i - 1] && powers[i] >= powers[i + 1])
-            .map(|i| (powers[i], frequencies[i]))
+        let sums = runs.par_iter().map(|run| self.sums_over(run.clone()));
+        sums.flatten_iter().collect()
+    }
+
+    /// Frequencies and sums at consecutive indices.
+    fn sums_over(&self, run: Range<usize>) -> Spectrum {
+        let mut turning: Vec<Vec<Turning>> = (self.recordings.iter())
+            .map(|recording| Turning::all(recording, self.mean, run.start as f64 * SPACING))
             .collect();
-        peaks.sort_by(|a, b| b.0.total_cmp(&a.0));
-        peaks.into_iter().map(|(_, frequency)| frequency).collect()
+        run.map(|index| {
+            let sums = turning.iter_mut().map(|samples| Turning::sum_and_turn(samples));
+            (index as f64 * SPACING, sums.collect())
+        })
+        .collect()
     }
 
     /// The strongest line at which the tool may turn and the strongest other one, where the recordings' phases differ.
-    fn with_phases(&self, of_tool: impl Fn(f64) -> bool) -> Vec<Line> {
-        let peaks = self.peaks(of_own_phases);
+    fn with_phases(&self, spectrum: &Spectrum, of_tool: impl Fn(f64) -> bool) -> Vec<Line> {
+        let peaks = peaks(spectrum, of_own_phases);
         let strongest = |tool: bool| peaks.iter().find(|f| of_tool(**f) == tool);
         let lines = [strongest(false), strongest(true)].into_iter().flatten();
         lines
@@ -205,7 +280,8 @@ mod tests {
 
     #[test]
     fn phases_that_differ_between_recordings_are_found() {
-        let lines = left(&[0.4, 2.4, -1.6]).with_phases(|f| f >= 11.0);
+        let left = left(&[0.4, 2.4, -1.6]);
+        let lines = left.with_phases(&left.spectrum(), |f| f >= 11.0);
         assert_eq!(lines.len(), 1, "{lines:?}");
         assert!((lines[0].frequency - 7.3).abs() < 0.03, "{lines:?}");
         for (place, expected) in [(1, 2.0), (2, -2.0)] {
@@ -219,8 +295,26 @@ mod tests {
 
     #[test]
     fn one_phase_is_no_phase_of_each() {
-        assert_eq!(left(&[0.4, 0.4, 0.4]).with_phases(|f| f >= 11.0), []);
-        let peaks = left(&[0.4, 0.4]).peaks(coherent);
+        let alike = left(&[0.4, 0.4, 0.4]);
+        let spectrum = alike.spectrum();
+        assert_eq!(alike.with_phases(&spectrum, |f| f >= 11.0), []);
+        let peaks = peaks(&spectrum, coherent);
         assert!((peaks[0] - 7.3).abs() < 0.03, "{peaks:?}");
+    }
+
+    #[test]
+    fn a_phase_that_is_turned_on_is_that_of_its_frequency() {
+        let mut left = left(&[0.4, 2.4]);
+        (left.mean, left.turns) = (0.3, [90.0, 110.0]);
+        let spectrum = left.spectrum();
+        assert_eq!(spectrum.len(), 3980 + 400);
+        for (frequency, sums) in &spectrum {
+            for (found, expected) in sums.iter().zip(left.sums(*frequency)) {
+                for part in 0..2 {
+                    let error = (found[part] - expected[part]).abs();
+                    assert!(error < 1e-9, "{frequency} Hz: {error:e}");
+                }
+            }
+        }
     }
 }
