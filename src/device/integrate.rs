@@ -25,6 +25,12 @@ const AIR_LIMIT: f64 = 1.2;
 const SLOW_LIMIT: f64 = 0.6;
 /// Speed from which on a piston is no longer slow [m/s].
 const SWIFT: f64 = 0.03;
+/// Error of a sub-step of a line, in proportion to air and stroke, beyond which it is taken in halves [1].
+const LINE_ERROR: f64 = 3e-6;
+/// Share of that below which the next one may be twice as long [1].
+const FAR_BELOW: f64 = 0.02;
+/// Sub-step of a line that is not halved [s].
+const SHORTEST_LINE_STEP: f64 = 5e-5;
 /// Sub-steps of a step beyond which a device is out of all proportion: its run then ends with the state that cannot be.
 const MOST_SUBSTEPS: f64 = 2e4;
 /// Looks at most when a change of mode is sought: to 1e-7 of a sub-step.
@@ -97,6 +103,17 @@ pub(super) struct Outside<N> {
     load: N,
 }
 
+/// A sub-step that was tried.
+pub(super) struct Step<N> {
+    /// The flow at its end.
+    pub(super) flow: Flow,
+    /// What is outside then.
+    pub(super) end: Outside<N>,
+    /// Error of a device with a line, in proportion to what is in its chambers and to its stroke, by the embedded method of order three; of others, whose
+    /// sub-steps are short enough by their rates, 0 [1].
+    pub(super) error: f64,
+}
+
 /// A sub-step's surroundings.
 pub(super) struct Surroundings<'a, L, P> {
     pub(super) device: &'a Device<P>,
@@ -108,6 +125,8 @@ pub(super) struct Surroundings<'a, L, P> {
     /// Deflection of the seals at the start of the sub-step [m].
     deflection: f64,
     pub(super) disturbance: Disturbance,
+    /// Longest sub-step of a line by the error of those before [s].
+    line_part: f64,
 }
 
 impl<P: Borrow<DeviceParameters>> Device<P> {
@@ -137,6 +156,7 @@ impl<P: Borrow<DeviceParameters>> Device<P> {
             impulses: Impulses::default(),
         };
         let mut time = 0.0;
+        let mut line_part = dt;
         while time < dt {
             let until_switching = state.spool.remaining();
             let trajectory = state
@@ -153,6 +173,7 @@ impl<P: Borrow<DeviceParameters>> Device<P> {
                 trajectory_start: time,
                 deflection: state.seal_deflection,
                 disturbance: state.disturbance,
+                line_part,
             };
             if count > 0.0 {
                 let mut at = Outside {
@@ -168,6 +189,7 @@ impl<P: Borrow<DeviceParameters>> Device<P> {
                 now = at.load;
             }
             state.seal_deflection = surroundings.deflection;
+            line_part = surroundings.line_part;
             state.regulator.follow(regulator, &trajectory);
             state.spool.advance(trajectory.duration);
             if let Some(reservoir) = &self.parameters().supply_reservoir {
@@ -194,9 +216,9 @@ impl<P: Borrow<DeviceParameters>> Device<P> {
         dt: f64,
     ) -> f64 {
         let volumes = self.smallest_volumes(motion, dt);
-        let air = (AIR_LIMIT / self.air_rate(volumes, &state.disturbance)).min(self.line_substep);
+        let air = AIR_LIMIT / self.air_rate(volumes, &state.disturbance);
         if !L::MOVES {
-            return air;
+            return air.min(self.line_substep);
         }
         // What the valve may let in during the step.
         let outlet = self.parameters().gas.atmosphere + state.regulator.outlet;
@@ -287,19 +309,30 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
         h: f64,
     ) -> Outside<L::Now> {
         let (mut from, mut left) = (start, h);
-        for _ in 0..MOST_EVENTS {
-            if !L::MOVES {
-                break;
-            }
+        let mut events = 0;
+        while events < MOST_EVENTS && L::MOVES {
             let mode = self.mode(&from.load, flow.motion);
-            let (whole, end) = self.step::<LEDGER>(flow, &from, left, mode);
-            if self.mode(&end.load, whole.motion) == mode {
-                self.accept(flow, whole, [from.time, left]);
-                return end;
+            let tried = left.min(self.line_part);
+            let step = self.step::<LEDGER>(flow, &from, tried, mode);
+            if self.is_too_long(&step, tried) {
+                self.line_part = 0.5 * tried;
+                continue;
             }
-            let (mut before, mut after) = ([0.0, flow.motion.speed], left);
+            let (whole, end) = (step.flow, step.end);
+            if self.mode(&end.load, whole.motion) == mode {
+                self.accept(flow, whole, [from.time, tried]);
+                from = end;
+                left -= tried;
+                // What is left of a sub-step that was taken in halves is rounding.
+                if left <= 1e-9 * h {
+                    return end;
+                }
+                continue;
+            }
+            events += 1;
+            let (mut before, mut after) = ([0.0, flow.motion.speed], tried);
             let (mut there, mut end) = (whole, end);
-            let near = left * 0.5f64.powi(LOOKS - 1);
+            let near = tried * 0.5f64.powi(LOOKS - 1);
             for look in 0..LOOKS {
                 if after - before[0] <= near {
                     break;
@@ -310,14 +343,14 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
                 } == mode;
                 let ends = [before, [after, there.motion.speed]];
                 let middle = match turns {
-                    true => next_look(ends, near * 2.0f64.powi(LOOKS - 1 - look), left),
+                    true => next_look(ends, near * 2.0f64.powi(LOOKS - 1 - look), tried),
                     false => 0.5 * (before[0] + after),
                 };
-                let (tried, then) = self.step::<LEDGER>(flow, &from, middle, mode);
-                if self.mode(&then.load, tried.motion) == mode {
-                    before = [middle, tried.motion.speed];
+                let looked = self.step::<LEDGER>(flow, &from, middle, mode);
+                if self.mode(&looked.end.load, looked.flow.motion) == mode {
+                    before = [middle, looked.flow.motion.speed];
                 } else {
-                    (after, there, end) = (middle, tried, then);
+                    (after, there, end) = (middle, looked.flow, looked.end);
                 }
             }
             self.accept(flow, there, [from.time, after]);
@@ -328,9 +361,9 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
             }
         }
         let mode = self.mode(&from.load, flow.motion);
-        let (rest, end) = self.step::<LEDGER>(flow, &from, left, mode);
-        self.accept(flow, rest, [from.time, left]);
-        end
+        let rest = self.step::<LEDGER>(flow, &from, left, mode);
+        self.accept(flow, rest.flow, [from.time, left]);
+        rest.end
     }
 
     fn accept(&mut self, flow: &mut Flow, next: Flow, [start, length]: [f64; 2]) {
@@ -391,14 +424,14 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
         })
     }
 
-    /// One step: the flow at its end, and what is outside then.
+    /// One step.
     fn step<const LEDGER: bool>(
         &self,
         start: &Flow,
         from: &Outside<L::Now>,
         h: f64,
         mode: Mode,
-    ) -> (Flow, Outside<L::Now>) {
+    ) -> Step<L::Now> {
         match &self.device.parameters().hose {
             None => self.runge_kutta_step::<LEDGER>(start, from, h, mode),
             Some(hose) => self.line_step::<LEDGER>(hose, start, from, h, mode),
@@ -412,7 +445,7 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
         from: &Outside<L::Now>,
         h: f64,
         mode: Mode,
-    ) -> (Flow, Outside<L::Now>) {
+    ) -> Step<L::Now> {
         let [middle, end] = self.ahead(from, h);
         let rates = |flow: &Flow, at: &Outside<L::Now>| {
             self.rates::<LEDGER>(flow, start.motion.stroke, at, mode)
@@ -426,7 +459,22 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
             .after(&k2, h / 3.0, LEDGER)
             .after(&k3, h / 3.0, LEDGER)
             .after(&k4, h / 6.0, LEDGER);
-        (flow, end)
+        Step {
+            flow,
+            end,
+            error: 0.0,
+        }
+    }
+
+    /// Whether a sub-step of a line is to be taken in halves; one that is far from it may be followed by a longer one.
+    fn is_too_long(&mut self, step: &Step<L::Now>, length: f64) -> bool {
+        if step.error <= LINE_ERROR {
+            if step.error < LINE_ERROR * FAR_BELOW {
+                self.line_part = 2.0 * length;
+            }
+            return false;
+        }
+        length > SHORTEST_LINE_STEP
     }
 
     /// Rates of everything; `substep_stroke` [m] is where the sub-step began, with the seals at `self.deflection`.

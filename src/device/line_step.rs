@@ -2,12 +2,13 @@
 //!
 //! The pair ARK4(3)6L[2]SA of order four (Kennedy and Carpenter, Appl. Numer. Math. 44, 2003): six stages, and at each of the last five the line's
 //! mass solves one equation, monotonic in the pressure; a reservoir that no longer holds the regulator's pressure drives the line, and is solved with it. Its implicit half is stable however fast the line is, damps what is faster than the
-//! sub-step, and ends on its last stage, so that a fast line comes out where inflow and outflow balance.
+//! sub-step, and ends on its last stage, so that a fast line comes out where inflow and outflow balance. The method of order three that is embedded in it tells
+//! a sub-step's error, by which its length is chosen (`integrate`).
 
 use std::borrow::Borrow;
 
 use super::DeviceParameters;
-use super::integrate::{Flow, Mode, Outside, Surroundings};
+use super::integrate::{Flow, Mode, Outside, Step, Surroundings};
 use super::load::Load;
 use super::state::AirState;
 use crate::physics::flow_slope::FlowSlope;
@@ -73,6 +74,34 @@ const IMPLICIT: [[f64; 5]; 6] = [
     ],
 ];
 
+/// Weights of the method of order three that is embedded, less those of order four.
+const EMBEDDED: [f64; 6] = [
+    4_586_570_599.0 / 29_645_900_160.0 - 82_889.0 / 524_892.0,
+    0.0,
+    178_811_875.0 / 945_068_544.0 - 15_625.0 / 83_664.0,
+    814_220_225.0 / 1_159_782_912.0 - 69_875.0 / 102_672.0,
+    -3_700_637.0 / 11_593_932.0 + 2_260.0 / 8_211.0,
+    61_727.0 / 225_920.0 - 0.25,
+];
+
+/// The largest error of a step by its stages' rates, in proportion to the air in each chamber and to the stroke, over the step's length [1/s].
+fn error_of(rates: &[Flow; 6], start: &Flow, full_stroke: f64) -> f64 {
+    let off = |rate: fn(&Flow) -> f64| {
+        let pairs = EMBEDDED.iter().zip(rates);
+        pairs
+            .map(|(weight, rates)| weight * rate(rates))
+            .sum::<f64>()
+            .abs()
+    };
+    let chambers = [
+        off(|flow| flow.air.masses[0]) / start.air.masses[0],
+        off(|flow| flow.air.masses[1]) / start.air.masses[1],
+    ];
+    (off(|flow| flow.motion.stroke) / full_stroke)
+        .max(chambers[0])
+        .max(chambers[1])
+}
+
 impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
     /// One step of the pair.
     pub(super) fn line_step<const LEDGER: bool>(
@@ -82,7 +111,7 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
         from: &Outside<L::Now>,
         h: f64,
         mode: Mode,
-    ) -> (Flow, Outside<L::Now>) {
+    ) -> Step<L::Now> {
         let mut rates = [*start; 6];
         let mut at = *from;
         let mut feed = Feed::of(&start.air);
@@ -121,7 +150,11 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
         }
         feed.put(&mut end.air);
         end.air.entered += end.air.line_mass() - summed;
-        (end, at)
+        Step {
+            error: h * error_of(&rates, start, self.device.parameters().full_stroke),
+            flow: end,
+            end: at,
+        }
     }
 }
 
@@ -267,5 +300,19 @@ mod tests {
                 near(sum(times(b, once)), 1.0 / 24.0);
             }
         }
+    }
+
+    #[test]
+    fn the_embedded_weights_meet_every_condition_of_order_three_and_not_those_of_four() {
+        let pair = tableaux();
+        let sum = |v: [f64; 6]| EMBEDDED.iter().zip(v).map(|(w, v)| w * v).sum::<f64>();
+        for power in 0..3 {
+            assert!(sum(NODES.map(|c| c.powi(power))).abs() < 1e-15, "{power}");
+        }
+        for a in &pair {
+            let once = a.map(|row| row.iter().zip(NODES).map(|(a, c)| a * c).sum::<f64>());
+            assert!(sum(once).abs() < 1e-15);
+        }
+        assert!(sum(NODES.map(|c| c.powi(3))).abs() > 1e-4);
     }
 }

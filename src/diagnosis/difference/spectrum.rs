@@ -214,7 +214,9 @@ impl Left {
             .map(|recording| Turning::all(recording, self.mean, run.start as f64 * SPACING))
             .collect();
         run.map(|index| {
-            let sums = turning.iter_mut().map(|samples| Turning::sum_and_turn(samples));
+            let sums = turning
+                .iter_mut()
+                .map(|samples| Turning::sum_and_turn(samples));
             (index as f64 * SPACING, sums.collect())
         })
         .collect()
