@@ -98,7 +98,7 @@ mod tests {
     use crate::diagnosis::fit::cross_validation::{Depth, left_out};
     use crate::diagnosis::fit::free::{Free, Prior};
     use crate::diagnosis::fit::model_error::ModelError;
-    use crate::diagnosis::fit::{FULL, Limit, fit};
+    use crate::diagnosis::fit::{FINEST, FULL, Limit, fit};
     use crate::diagnosis::recordings::clean::clean;
     use crate::diagnosis::recordings::evidence::{Evidence, Measured, by_channel, rms_by_channel};
     use crate::effects::Coordinate;
@@ -255,6 +255,36 @@ mod tests {
             let counted = residuals.iter().filter(|r| r.is_finite());
             let square = counted.map(|r| r * r).sum::<f64>() / 295.0;
             assert!((0.7..1.4).contains(&square), "{square}");
+        }
+    }
+
+    /// New derivatives at each iteration of each stage would take 2 of a number more for as many iterations; where it ends its derivatives are new.
+    #[test]
+    fn a_fit_goes_on_by_earlier_derivatives_to_the_same_end() {
+        let evidence = fills(0);
+        let free = [free(0, 1.0), free(1, 0.5)];
+        let start = (&[1.0, 0.5], None);
+        let whole = fit(&evidence, start, (&free, &[]), FULL, Limit::of(40));
+        let effort = evidence.effort.report().model_evaluations;
+        assert!(effort <= 33, "{effort} model evaluations");
+        let again = fit(
+            &evidence,
+            (&whole.prediction.plant, None),
+            (
+                &free.map(|f| Free {
+                    start: whole.values[f.quantity],
+                    ..f
+                }),
+                &[],
+            ),
+            FINEST,
+            Limit::of(40),
+        );
+        assert!(whole.cost() - again.cost() < 0.05);
+        for (column, newest) in whole.columns.iter().zip(&again.columns) {
+            for (slope, newest) in column.iter().zip(newest) {
+                assert!((slope - newest).abs() <= 1e-3 * newest.abs() + 1e-9);
+            }
         }
     }
 
