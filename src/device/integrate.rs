@@ -26,7 +26,7 @@ const SLOW_LIMIT: f64 = 0.6;
 /// Speed from which on a piston is no longer slow [m/s].
 const SWIFT: f64 = 0.03;
 /// Error of a sub-step of a line, in proportion to air and stroke, beyond which it is taken in halves [1].
-const LINE_ERROR: f64 = 3e-6;
+const LINE_ERROR: f64 = 1e-6;
 /// Share of that below which the next one may be twice as long [1].
 const FAR_BELOW: f64 = 0.02;
 /// Sub-step of a line that is not halved [s].
