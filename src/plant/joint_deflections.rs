@@ -48,6 +48,14 @@ struct Key {
     apart: u8,
 }
 
+impl Key {
+    /// Whether its inverse is that of another: steps are differences of time stamps, equal but for rounding.
+    fn serves(&self, other: &Self) -> bool {
+        let step = self.step;
+        (step - other.step).abs() < 1e-9 * step && Self { step, ..*other } == *self
+    }
+}
+
 /// Forces that bend the arm.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bending {
@@ -225,11 +233,16 @@ impl<'a> JointDeflections<'a> {
                 - motor
                 - halved[j] * self.speed[j]
                 - stiffness[j] * (self.deflection[j] - rest[j]);
-            for k in 0..self.count {
-                right[j] += inertia[(j, k)] / h * self.speed[k];
-            }
+            let momentum: f64 = (0..self.count)
+                .map(|k| inertia[(j, k)] * self.speed[k])
+                .sum();
+            right[j] += momentum / h;
         }
-        if self.inverse.as_ref().is_none_or(|(known, _)| *known != key) {
+        if self
+            .inverse
+            .as_ref()
+            .is_none_or(|(known, _)| !known.serves(&key))
+        {
             let matrix = DMatrix::from_fn(self.count, self.count, |j, k| {
                 let own = if j == k { halved[j] } else { 0.0 };
                 let bent = normal[j] + share * axial[j];
