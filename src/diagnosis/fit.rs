@@ -414,9 +414,77 @@ struct Walk<'a, S: Subject> {
     /// Levenberg and Marquardt's damping [1].
     damping: f64,
     longest_step: f64,
+    /// Number of columns that are kept as they are.
+    frozen: usize,
+    /// Derivatives of the residuals by the coordinates.
+    columns: Vec<Vec<f64>>,
+    /// Whether the piston was held when they were found; none before.
+    derived: Option<bool>,
+    /// Whether the fit has moved since.
+    moved: bool,
+    /// Information matrix of the last iteration.
+    information: DMatrix<f64>,
 }
 
 impl<S: Subject> Walk<'_, S> {
+    /// Goes through a stage, in no more iterations than are `left`.
+    fn through(&mut self, stage: &Stage, left: &mut usize) {
+        if self.here.guided != stage.guided {
+            self.here = (self.evidence).predict(&self.here.plant, stage.guided, None);
+        }
+        let shares = self.evidence.shares(stage.forgiven, stage.guided);
+        while *left > 0 {
+            if self.goes_on(stage, &shares) == Chord::Ends {
+                return;
+            }
+            *left -= 1;
+            self.derive();
+            let iteration = Iteration::of(self, &shares, stage);
+            let gain = self.iterate(&iteration);
+            self.moved |= gain > 0.0;
+            self.information = iteration.normal;
+            if gain < iteration.enough {
+                return;
+            }
+        }
+    }
+
+    /// Goes on by derivatives of earlier places while steps keep their promise. The end of a stage that ends short of the least is left to those.
+    fn goes_on(&mut self, stage: &Stage, shares: &[f64]) -> Chord {
+        if self.derived != Some(stage.guided) || !self.moved {
+            return Chord::Fails;
+        }
+        for _ in 0..MOST_CHORDS {
+            let iteration = Iteration::of(self, shares, stage);
+            let chord = self.chord(&iteration);
+            self.information = iteration.normal;
+            match chord {
+                Chord::Gains => (),
+                Chord::Ends if stage.gain > 0.0 => return Chord::Ends,
+                Chord::Ends | Chord::Fails => return Chord::Fails,
+            }
+        }
+        Chord::Gains
+    }
+
+    /// Finds the derivatives anew, unless they are those of this place.
+    fn derive(&mut self) {
+        let guided = Some(self.here.guided);
+        if self.derived == guided && !self.moved {
+            return;
+        }
+        self.columns.truncate(self.frozen);
+        let open = jacobian(
+            self.evidence,
+            &self.here,
+            self.free,
+            &self.values,
+            self.frozen,
+        );
+        self.columns.extend(open);
+        (self.derived, self.moved) = (guided, false);
+    }
+
     /// Steps more and more damped, until one gains or none promises to. Returns the gain.
     fn iterate(&mut self, iteration: &Iteration<'_>) -> f64 {
         for _ in 0..MOST_TRIES {
@@ -437,10 +505,10 @@ impl<S: Subject> Walk<'_, S> {
         0.0
     }
 
-    /// One step by derivatives of an earlier place, taken if it keeps its promise; none where it promises less than `enough`.
-    fn chord(&mut self, iteration: &Iteration<'_>, enough: f64) -> Chord {
+    /// One step by derivatives of an earlier place, taken if it keeps its promise; none where it promises no more than ends the stage.
+    fn chord(&mut self, iteration: &Iteration<'_>) -> Chord {
         match self.step(iteration) {
-            Some((_, promised)) if promised < enough => Chord::Ends,
+            Some((_, promised)) if promised < iteration.enough => Chord::Ends,
             Some((tried, promised)) => {
                 match self.try_step(iteration, tried, KEPT_PROMISE * promised) > 0.0 {
                     true => Chord::Gains,
@@ -477,6 +545,7 @@ impl<S: Subject> Walk<'_, S> {
 }
 
 /// What a step by earlier derivatives came to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Chord {
     /// It gains about what it promised.
     Gains,
@@ -491,28 +560,28 @@ struct Iteration<'a> {
     weighing: Weighing<'a>,
     /// Cost there [1].
     before: f64,
+    /// Gain below which the stage has come to its end [1].
+    enough: f64,
     normal: DMatrix<f64>,
     gradient: DVector<f64>,
 }
 
 impl<'a> Iteration<'a> {
-    /// Of a fit with its derivatives, by samples of these shares, their loss bounded or not.
-    fn of<S: Subject>(
-        walk: &Walk<'_, S>,
-        columns: &[Vec<f64>],
-        (shares, bounded): (&'a [f64], bool),
-    ) -> Self {
+    /// Of a fit with its derivatives, by samples of these shares.
+    fn of<S: Subject>(walk: &Walk<'_, S>, shares: &'a [f64], stage: &Stage) -> Self {
         let residuals = &walk.here.residuals;
         let weighing = Weighing {
             shares,
             limit: limit_for(residuals, shares),
-            bounded,
+            bounded: stage.bounded,
         };
         let (normal, gradient) =
-            normal_equations(columns, residuals, &weighing, walk.free, &walk.values);
+            normal_equations(&walk.columns, residuals, &weighing, walk.free, &walk.values);
+        let before = weighing.sum(residuals) + walk.prior;
         Self {
-            before: weighing.sum(residuals) + walk.prior,
             weighing,
+            before,
+            enough: LEAST_GAIN.max(stage.gain * before),
             normal,
             gradient,
         }
@@ -536,58 +605,22 @@ pub fn fit<S: Subject>(
         values,
         damping: 1e-4,
         longest_step: limit.longest_step,
+        frozen: frozen.len(),
+        columns: frozen.to_vec(),
+        derived: None,
+        moved: false,
+        information: DMatrix::zeros(free.len(), free.len()),
     };
-    let mut information = DMatrix::zeros(free.len(), free.len());
-    let mut columns: Vec<Vec<f64>> = frozen.to_vec();
     let mut left = limit.iterations;
-    // Whether the piston was held when the derivatives were found, and whether the fit has moved since.
-    let (mut derived, mut moved) = (None, false);
-    'stages: for &Stage {
-        forgiven,
-        guided,
-        bounded,
-        gain: least,
-    } in stages
-    {
-        if walk.here.guided != guided {
-            walk.here = evidence.predict(&walk.here.plant, guided, None);
-        }
-        let shares = evidence.shares(forgiven, guided);
-        while left > 0 {
-            if derived == Some(guided) && moved {
-                for _ in 0..MOST_CHORDS {
-                    let iteration = Iteration::of(&walk, &columns, (&shares, bounded));
-                    let enough = LEAST_GAIN.max(least * iteration.before);
-                    let chord = walk.chord(&iteration, enough);
-                    information = iteration.normal;
-                    match chord {
-                        Chord::Ends if least > 0.0 => continue 'stages,
-                        Chord::Gains => (),
-                        Chord::Ends | Chord::Fails => break,
-                    }
-                }
-            }
-            left -= 1;
-            if derived != Some(guided) || moved {
-                columns.truncate(frozen.len());
-                let values = &walk.values;
-                let open = jacobian(evidence, &walk.here, free, values, frozen.len());
-                columns.extend(open);
-                (derived, moved) = (Some(guided), false);
-            }
-            let iteration = Iteration::of(&walk, &columns, (&shares, bounded));
-            let gain = walk.iterate(&iteration);
-            moved |= gain > 0.0;
-            information = iteration.normal;
-            if gain < LEAST_GAIN.max(least * iteration.before) {
-                break;
-            }
-        }
+    for stage in stages {
+        walk.through(stage, &mut left);
     }
     let Walk {
         values,
         here,
         prior,
+        columns,
+        information,
         ..
     } = walk;
     let misfit = robust_sum(&here.residuals);
