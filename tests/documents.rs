@@ -77,7 +77,15 @@ fn the_readme_is_short() {
 #[test]
 fn every_link_of_a_document_leads_to_a_file() {
     let mut broken = Vec::new();
-    let folders = ["", "docs/", "scenarios/", "assets/import/"];
+    let folders = [
+        "",
+        "docs/",
+        "docs/evidence/",
+        "scenarios/",
+        "assets/import/",
+        "models/arm/",
+        "examples/ci/",
+    ];
     let pages = folders.into_iter().flat_map(|folder| {
         let entries = std::fs::read_dir(project(folder)).unwrap();
         let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());

@@ -1,4 +1,4 @@
-//! report.html: what a folder of results holds, as one file for a browser.
+//! report.html: what a folder of results holds, as one file for a browser; or the same as Markdown on standard output.
 
 use std::path::{Path, PathBuf};
 
@@ -16,7 +16,7 @@ use super::terminal::shown_path;
 use super::vary::{self, SWEEP};
 use crate::design::StudyDocument;
 use crate::diagnosis::answer::Answer;
-use crate::document::html;
+use crate::document::{Document, html, markdown};
 use crate::recording::atomic::write_text;
 use crate::recording::csv::EdgeProfile;
 use crate::recording::parquet::read_parquet;
@@ -34,7 +34,9 @@ Examples:
   idc run scenarios/paper_step.toml --out runs/step --quiet
   idc report runs/step
   # elsewhere
-  idc report runs/step --out runs/step_for_you.html";
+  idc report runs/step --out runs/step_for_you.html
+  # conclusion and tables as Markdown, as for the summary of a CI job
+  idc report runs/step --markdown";
 
 /// Length of a picture that a page takes in at most [byte]; ours have a twentieth of it.
 const LARGEST_PICTURE: u64 = 4_000_000;
@@ -55,7 +57,13 @@ pub(super) struct ReportArguments {
     /// Print what was written as JSON.
     #[arg(long, conflicts_with = "quiet")]
     json: bool,
+    /// Print conclusion and tables as Markdown instead; no file is written.
+    #[arg(long, conflicts_with_all = ["out", "force", "quiet", "json"])]
+    markdown: bool,
 }
+
+/// How a document is written.
+type Renderer = fn(&Document<'_>) -> String;
 
 /// Writes the page of a folder.
 pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
@@ -85,31 +93,12 @@ pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
             file: out.display().to_string(),
         });
     }
-    let (kind, text) = if folder.join(DIAGNOSIS).is_file() {
-        let answer: Answer = read_json(&folder.join(DIAGNOSIS))?;
-        (
-            "diagnosis",
-            html(&report::diagnosis(&answer, &read_comparison(folder)?)),
-        )
-    } else if folder.join(SUMMARY).is_file() {
-        ("run", run_page(folder)?)
-    } else if folder.join(SWEEP).is_file() {
-        let swept = read_json(&folder.join(SWEEP))?;
-        (
-            "sweep",
-            html(&vary::document(&swept, &folder.join(vary::RUNS))?),
-        )
-    } else if folder.join(FLEET).is_file() {
-        let found = read_json(&folder.join(FLEET))?;
-        ("fleet", html(&fleet::document(&found)))
-    } else if folder.join(DESIGN).is_file() {
-        let study: StudyDocument = read_json(&folder.join(DESIGN))?;
-        ("study", html(&report::study(&study)))
-    } else {
-        return Err(AppError::NoResults {
-            folder: folder.display().to_string(),
-        });
-    };
+    if arguments.markdown {
+        let (_, text) = rendered(folder, markdown)?;
+        say(&text)?;
+        return Ok(ExitCode::Done);
+    }
+    let (kind, text) = rendered(folder, html)?;
     let default = || folder.join(REPORT);
     let out = arguments.out.clone().unwrap_or_else(default);
     let policy = match &arguments.out {
@@ -132,8 +121,38 @@ pub(super) fn run(arguments: &ReportArguments) -> Result<ExitCode, AppError> {
     Ok(ExitCode::Done)
 }
 
+/// What kind of result a folder holds, and its document as text.
+fn rendered(folder: &Path, render: Renderer) -> Result<(&'static str, String), AppError> {
+    let found = if folder.join(DIAGNOSIS).is_file() {
+        let answer: Answer = read_json(&folder.join(DIAGNOSIS))?;
+        (
+            "diagnosis",
+            render(&report::diagnosis(&answer, &read_comparison(folder)?)),
+        )
+    } else if folder.join(SUMMARY).is_file() {
+        ("run", run_page(folder, render)?)
+    } else if folder.join(SWEEP).is_file() {
+        let swept = read_json(&folder.join(SWEEP))?;
+        (
+            "sweep",
+            render(&vary::document(&swept, &folder.join(vary::RUNS))?),
+        )
+    } else if folder.join(FLEET).is_file() {
+        let found = read_json(&folder.join(FLEET))?;
+        ("fleet", render(&fleet::document(&found)))
+    } else if folder.join(DESIGN).is_file() {
+        let study: StudyDocument = read_json(&folder.join(DESIGN))?;
+        ("study", render(&report::study(&study)))
+    } else {
+        return Err(AppError::NoResults {
+            folder: folder.display().to_string(),
+        });
+    };
+    Ok(found)
+}
+
 /// The page of a run, from its folder.
-fn run_page(folder: &Path) -> Result<String, AppError> {
+fn run_page(folder: &Path, render: Renderer) -> Result<String, AppError> {
     let picture = |name: &str| picture(&folder.join(name));
     // A bench has none, nor has a run of an older version.
     let space = folder.join(DRAWING);
@@ -151,7 +170,7 @@ fn run_page(folder: &Path) -> Result<String, AppError> {
         },
         profile: profile.as_ref(),
     };
-    Ok(html(&report.document()))
+    Ok(render(&report.document()))
 }
 
 /// A picture, if it is there.
