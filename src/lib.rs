@@ -26,6 +26,7 @@
 //! - [`cell`]: all of it assembled and checked
 //! - `advice`: what would make a refused job possible
 //! - [`place`]: where the part of a cell can lie
+//! - `robot_program`: a planned path as a program of a robot's maker, and such programs read
 //! - [`simulation`]: the coupled step
 //! - [`rig`]: the bench rig, the device without an arm
 //! - [`recording`]: sampled signals, CSV, Parquet
@@ -104,6 +105,8 @@ pub mod removal;
 pub mod replay;
 pub mod report;
 pub mod rig;
+#[cfg(feature = "cli")]
+pub mod robot_program;
 pub mod run;
 pub mod scenario;
 pub mod scene;

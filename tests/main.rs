@@ -64,6 +64,7 @@ mod removal;
 mod removal_table;
 mod report;
 mod rig_file;
+mod robot_program;
 mod run_in_one_call;
 mod scenario_comments;
 mod schemas;

@@ -67,6 +67,8 @@ enum Command {
     /// Say where the part of a cell can lie: over a grid of positions, where the whole job can be done.
     #[command(after_help = super::place::EXAMPLES)]
     Place(super::place::PlaceArguments),
+    /// Write a program for a robot, from the planned path of a cell.
+    Export(super::export::ExportArguments),
     /// Make a recording of the logs of a real device, as a map says what their columns are.
     #[command(after_help = help::IMPORT)]
     Import(super::import::ImportArguments),
@@ -140,6 +142,7 @@ pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
         Command::View(arguments) => super::view::run(arguments),
         Command::Edges(arguments) => super::edges::list(arguments),
         Command::Place(arguments) => super::place::run(arguments),
+        Command::Export(arguments) => super::export::run(arguments),
         Command::Import(arguments) => super::import::run(arguments),
         Command::Predict(arguments) => super::predict::predict(arguments),
         Command::Diagnose(arguments) => super::diagnose::run(arguments),

@@ -409,6 +409,9 @@ pub enum AppError {
     /// A picture.
     #[error(transparent)]
     Figure(#[from] crate::figure::FigureError),
+    /// A robot's program.
+    #[error(transparent)]
+    Program(#[from] crate::robot_program::ProgramError),
     /// A viewer.
     #[error(transparent)]
     Viewer(#[from] super::viewer::ViewerError),

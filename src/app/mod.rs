@@ -15,6 +15,7 @@ mod edges;
 mod effects;
 mod engine;
 mod error;
+mod export;
 mod estimate_figure;
 mod files;
 mod fleet;

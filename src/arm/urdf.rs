@@ -7,6 +7,7 @@ mod arm;
 mod collisions;
 mod draft;
 mod error;
+mod fixed;
 mod format;
 mod graph;
 mod identified;
@@ -34,6 +35,7 @@ mod tests;
 pub use arm::{Arm, ArmOptions, CollisionShape, EstimatedMass, LimitOverride, Visual, VisualShape};
 pub use draft::{ArmDraft, draft_of, mount_of_recorded};
 pub use error::{ArmError, Refusal};
+pub use fixed::fixed_frame;
 pub use identified::{Identified, identified_urdf};
 pub use mount::Mount;
 

@@ -23,7 +23,7 @@ pub mod torques;
 
 pub use choice::Outline;
 pub use error::{Obstacle, PlanError};
-pub use plan::Plan;
+pub use plan::{Plan, Stretch};
 pub use reference::Reference;
 pub use request::{Pass, Phase, PlanRequest};
 pub use toolpath::{ToolAxis, ToolPath, ToolStation};

@@ -35,6 +35,21 @@ pub struct Plan {
     pub notes: Vec<String>,
 }
 
+/// A stretch of the job: from rest to rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch {
+    /// Part of the job.
+    pub phase: Phase,
+    /// Pass that it belongs to, from 0.
+    pub pass: usize,
+    /// When its motion starts [s].
+    pub start: f64,
+    /// When its motion ends [s].
+    pub at_rest: f64,
+    /// When the next stretch starts [s].
+    pub end: f64,
+}
+
 impl Plan {
     /// Chooses roll and posture by widely spaced poses of the whole job.
     ///
@@ -105,6 +120,17 @@ impl Plan {
             .iter()
             .map(|leg| (leg.phase, leg.start_time, leg.start_time + leg.duration))
             .collect()
+    }
+
+    /// The stretches of the job in order, each a motion and a rest after it.
+    pub fn stretches(&self) -> impl Iterator<Item = Stretch> + '_ {
+        self.legs.iter().map(|leg| Stretch {
+            phase: leg.phase,
+            pass: leg.pass,
+            start: leg.start_time,
+            at_rest: leg.start_time + leg.profile.duration(),
+            end: leg.start_time + leg.duration,
+        })
     }
 
     /// Joint angles at the start [rad].

@@ -16,6 +16,7 @@ use super::cell::{
 use super::controller::ControllerKeys;
 use super::device::ModelKeys;
 use super::effects::EffectKeys;
+use super::program::ProgramScenario;
 use super::sensing::keys::SensingKeys;
 use crate::keys::declaration::{Plain, keys};
 
@@ -90,6 +91,7 @@ keys! {
         removal: Option<RemovalKeys> = "removal";
         collision: CollisionKeys = "collision";
         obstacle: Vec<ObstacleKeys> = "obstacle";
+        program: ProgramScenario = "program";
         simulation: SimulationScenario = "simulation";
         sensing: SensingKeys = "sensing";
         controller: ControllerKeys = "controller";

@@ -13,6 +13,7 @@ use super::controller::{ForceLaw, controller};
 use super::device::load_with_overrides;
 use super::effects::{EffectKeys, effects};
 use super::file::{self, ScenarioFile};
+use super::program::program;
 use super::sensing::sensing;
 use super::tool;
 use super::workpiece::workpiece;
@@ -67,6 +68,7 @@ pub(super) fn from_document(
         sensing,
         controller,
         collision: collision(document, &file.collision, &file.obstacle)?,
+        program: program(&section("program"), file.program)?,
         simulation: file.simulation,
         expect: expectations(&section("expect"), &file.expect)?,
         effects: of_whole(document, &file.effect, &nominal)?,

@@ -13,6 +13,7 @@ use super::cell::{
     WorkpieceScenario,
 };
 use super::controller::ControllerScenario;
+use super::program::ProgramScenario;
 use crate::effects::PresentEffect;
 use crate::plant::{Nominal, PlantParameters};
 use crate::sensing::SensingParameters;
@@ -42,6 +43,8 @@ pub struct Scenario {
     pub removal: Option<RemovalScenario>,
     /// What must not meet.
     pub collision: CollisionScenario,
+    /// What a robot's program of it says beyond the cell.
+    pub program: ProgramScenario,
     /// Settings of its simulation.
     pub simulation: SimulationScenario,
     /// Sensing between controller and device.
