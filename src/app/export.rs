@@ -9,7 +9,7 @@ use super::files::{OutputFolder, OverwritePolicy, output_folder};
 use super::output::say;
 use super::terminal::shown_path;
 use crate::cell::Cell;
-use crate::recording::atomic::{write_all, write_text};
+use crate::recording::atomic::write_all;
 use crate::robot_program::{
     Deviation, Dialect, Moves, ProgramError, bag, csv, deviation, planned, read, sampled, write,
 };
