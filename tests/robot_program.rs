@@ -261,7 +261,7 @@ fn every_arm_gets_its_joints_over_time() {
     assert_eq!(message.channel.topic, "/joint_trajectory");
     let data = &message.data[4..];
     let mut at = 0;
-    let mut word = |at: &mut usize| {
+    let word = |at: &mut usize| {
         *at = at.next_multiple_of(4);
         let value = u32::from_le_bytes(data[*at..*at + 4].try_into().unwrap()) as usize;
         *at += 4;
