@@ -7,7 +7,7 @@ use glamx::DPose3;
 use idc_cell::Cell;
 use idc_cell::arm::kinematics::tip_pose;
 use idc_cell::path::Phase;
-use idc_cell::robot_program::{Dialect, Pace, Program, Step, Target, Way, read};
+use idc_cell::robot_program::{Dialect, Program, Step, Target, Timing, Way, read};
 
 use crate::program::Bench;
 
@@ -162,8 +162,8 @@ fn poses_speeds_and_frames_are_those_of_the_plan() {
             assert!(found.rotation.angle_between(flange.rotation) < 2e-5);
             let centre = (base * *base_from_part * *pose).translation;
             assert!((centre - reference.centre).length() < 2e-6);
-            let fastest = moves.iter().map(|one| match one.pace {
-                Some(Pace::Speed(speed)) => speed,
+            let fastest = moves.iter().map(|one| match one.timing {
+                Some(Timing::Speed(speed)) => speed,
                 other => panic!("{other:?}"),
             });
             let fastest = fastest.fold(0.0, f64::max);
@@ -181,8 +181,8 @@ fn joint_moves_take_the_time_of_the_plan() {
         let cell = Cell::load(&bench.path("scenario.toml")).unwrap();
         let times = program.steps.iter().map(|step| match step {
             Step::Wait(time) => *time,
-            Step::Move(one) => match one.pace {
-                Some(Pace::Duration(time)) => time,
+            Step::Move(one) => match one.timing {
+                Some(Timing::Duration(time)) => time,
                 _ => 0.0,
             },
             _ => 0.0,

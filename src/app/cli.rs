@@ -68,6 +68,7 @@ enum Command {
     #[command(after_help = super::place::EXAMPLES)]
     Place(super::place::PlaceArguments),
     /// Write a program for a robot, from the planned path of a cell.
+    #[command(after_help = super::export::EXAMPLES)]
     Export(super::export::ExportArguments),
     /// Make a recording of the logs of a real device, as a map says what their columns are.
     #[command(after_help = help::IMPORT)]

@@ -156,12 +156,12 @@ fn program(arguments: &ProgramArguments) -> Result<ExitCode, AppError> {
             .map(|one| (place(&one.file), one.text.as_bytes())),
     );
     write_all(&files)?;
-    told(arguments, folder.path(), &all, written.as_ref())?;
+    report(arguments, folder.path(), &all, written.as_ref())?;
     Ok(ExitCode::Done)
 }
 
 /// What was written, and how exactly.
-fn told(
+fn report(
     arguments: &ProgramArguments,
     folder: &Path,
     all: &[&str],
@@ -175,7 +175,7 @@ fn told(
                 "position_um": digits(1e6 * one.deviation.position),
                 "angle_deg": (1e7 * one.deviation.angle.to_degrees()).round() / 1e7,
                 "joint_deg": (1e7 * one.deviation.joint.to_degrees()).round() / 1e7,
-                "speed_percent": digits(100.0 * one.deviation.pace),
+                "speed_percent": digits(100.0 * one.deviation.timing),
             })
         });
         let document = serde_json::json!({
@@ -194,7 +194,7 @@ fn told(
             position,
             angle,
             joint,
-            pace,
+            timing,
         } = one.deviation;
         say(&format!(
             "{} moves; read back, the program is within {:.3} um, {:.6} deg, {:.6} deg of the joints and {:.3} % of the speeds planned\n",
@@ -202,7 +202,7 @@ fn told(
             1e6 * position,
             angle.to_degrees(),
             joint.to_degrees(),
-            100.0 * pace
+            100.0 * timing
         ))?;
     }
     say(&format!(

@@ -1,6 +1,6 @@
 //! How far a program that was read back is from what was to be written.
 
-use super::moves::{Frame, Move, Pace, Program, Step, Target, Zone};
+use super::moves::{Frame, Move, Program, Step, Target, Timing, Zone};
 
 /// Greatest differences between two programs.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -12,7 +12,7 @@ pub struct Deviation {
     /// Of joint angles [rad].
     pub joint: f64,
     /// Of speeds and times, as a share [1].
-    pub pace: f64,
+    pub timing: f64,
 }
 
 /// A step with the tool and the frame that it is done with.
@@ -124,7 +124,7 @@ impl Deviation {
                 },
                 Target::Pose {
                     pose: read,
-                    configuration: stands,
+                    configuration: other,
                 },
             ) => {
                 let frame = |pose| Frame {
@@ -132,7 +132,7 @@ impl Deviation {
                     pose: Some(pose),
                 };
                 self.frames(&frame(*pose), &frame(*read))?;
-                if configuration != stands {
+                if configuration != other {
                     return Err("another configuration");
                 }
             }
@@ -147,14 +147,14 @@ impl Deviation {
                 return Err("another zone");
             }
         }
-        let (one, other) = match (one.pace, other.pace) {
-            (Some(Pace::Speed(one)), Some(Pace::Speed(other)))
-            | (Some(Pace::Turning(one)), Some(Pace::Turning(other)))
-            | (Some(Pace::Duration(one)), Some(Pace::Duration(other)))
-            | (Some(Pace::Share(one)), Some(Pace::Share(other))) => (one, other),
+        let (one, other) = match (one.timing, other.timing) {
+            (Some(Timing::Speed(one)), Some(Timing::Speed(other)))
+            | (Some(Timing::Turning(one)), Some(Timing::Turning(other)))
+            | (Some(Timing::Duration(one)), Some(Timing::Duration(other)))
+            | (Some(Timing::Share(one)), Some(Timing::Share(other))) => (one, other),
             _ => return Err("another kind of speed"),
         };
-        self.pace = self.pace.max((one - other).abs() / one);
+        self.timing = self.timing.max((one - other).abs() / one);
         Ok(())
     }
 }

@@ -4,14 +4,14 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use crate::quantity::counted;
+use crate::cell::CellError;
 
 /// What keeps a program from being written or read.
 #[derive(Debug, Error)]
 pub enum ProgramError {
     /// Another number of axes than the dialect has.
     #[error(
-        "{file}: the arm has {}, expected six for --dialect {dialect}; without --dialect, trajectory.csv and trajectory.mcap are written for every arm", counted(*axes, "axis")
+        "{file}: the arm has {axes} axes, expected six for --dialect {dialect}; without --dialect, trajectory.csv and trajectory.mcap are written for every arm"
     )]
     Axes {
         /// The scenario.
@@ -147,7 +147,7 @@ pub enum ProgramError {
     },
     /// The arm's file.
     #[error(transparent)]
-    Cell(Box<crate::cell::CellError>),
+    Cell(Box<CellError>),
     /// A bag that could not be written.
     #[error("cannot make the bag: {0}")]
     Bag(String),

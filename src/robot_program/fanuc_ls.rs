@@ -11,7 +11,7 @@ use std::fmt::Write as _;
 use glamx::DPose3;
 
 use super::error::ProgramError;
-use super::moves::{Configuration, Frame, Move, Pace, Program, Step, Target, Way, Zone};
+use super::moves::{Configuration, Frame, Move, Program, Step, Target, Timing, Way, Zone};
 use super::orientation::{fixed, millimetres_and_degrees, of_millimetres_and_degrees};
 use super::words::{Line, Token};
 
@@ -88,18 +88,18 @@ fn move_text(one: &Move, number: usize) -> String {
         Way::Joint => "J",
         Way::Line => "L",
     };
-    let pace = match one.pace {
-        Some(Pace::Speed(speed)) => speed_text(1e3 * speed),
-        Some(Pace::Duration(time)) => format!("{:.0}msec", 1e3 * time),
-        Some(Pace::Share(share)) => format!("{:.0}%", 100.0 * share),
-        Some(Pace::Turning(_)) | None => "10%".to_owned(),
+    let timing = match one.timing {
+        Some(Timing::Speed(speed)) => speed_text(1e3 * speed),
+        Some(Timing::Duration(time)) => format!("{:.0}msec", 1e3 * time),
+        Some(Timing::Share(share)) => format!("{:.0}%", 100.0 * share),
+        Some(Timing::Turning(_)) | None => "10%".to_owned(),
     };
     let zone = match one.zone {
         Zone::Stop => "FINE".to_owned(),
         Zone::Share(share) => format!("CNT{:.0}", 100.0 * share),
         Zone::Within(_) | Zone::Through => "CNT100".to_owned(),
     };
-    format!("{word} P[{number}] {pace} {zone}")
+    format!("{word} P[{number}] {timing} {zone}")
 }
 
 /// A speed with one digit behind the point [mm/s]; where that rounds too much, in the finer centimetres a minute.
@@ -343,12 +343,12 @@ impl Reader {
             false => String::new(),
         };
         let is_joint = word == "J";
-        let pace = match (unit.as_str(), per.as_str()) {
-            ("%", "") if is_joint && value <= 100.0 => Pace::Share(1e-2 * value),
-            ("mm", "sec") if !is_joint => Pace::Speed(1e-3 * value),
-            ("cm", "min") if !is_joint => Pace::Speed(1e-2 / 60.0 * value),
-            ("sec", "") => Pace::Duration(value),
-            ("msec", "") => Pace::Duration(1e-3 * value),
+        let timing = match (unit.as_str(), per.as_str()) {
+            ("%", "") if is_joint && value <= 100.0 => Timing::Share(1e-2 * value),
+            ("mm", "sec") if !is_joint => Timing::Speed(1e-3 * value),
+            ("cm", "min") if !is_joint => Timing::Speed(1e-2 / 60.0 * value),
+            ("sec", "") => Timing::Duration(value),
+            ("msec", "") => Timing::Duration(1e-3 * value),
             _ => return Err(before.refuse("a speed: % for J, mm/sec or cm/min for L, sec or msec")),
         };
         let before = line.clone();
@@ -373,7 +373,7 @@ impl Reader {
             way: if is_joint { Way::Joint } else { Way::Line },
             // Put in once the positions have been read.
             target: Target::Joints([0.0; 6]),
-            pace: Some(pace),
+            timing: Some(timing),
             zone,
         }));
         Ok(())

@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 use glamx::DPose3;
 
 use super::error::ProgramError;
-use super::moves::{Configuration, Frame, Move, Pace, Program, Step, Target, Way, Zone};
+use super::moves::{Configuration, Frame, Move, Program, Step, Target, Timing, Way, Zone};
 use super::orientation::{fixed, millimetres_and_degrees, of_millimetres_and_degrees};
 use super::words::{Line, Token};
 
@@ -66,7 +66,7 @@ fn timed(steps: &[Step]) -> usize {
     for step in steps {
         match step {
             Step::Move(Move {
-                pace: Some(Pace::Duration(_)),
+                timing: Some(Timing::Duration(_)),
                 zone,
                 ..
             }) => {
@@ -88,7 +88,7 @@ fn spline(text: &mut String, steps: &[Step]) {
     for step in steps {
         if let Step::Move(Move {
             target,
-            pace: Some(Pace::Duration(time)),
+            timing: Some(Timing::Duration(time)),
             ..
         }) = step
         {
@@ -146,15 +146,15 @@ impl Written {
                 *kept = line;
             }
         };
-        match one.pace {
-            Some(Pace::Speed(speed)) => {
+        match one.timing {
+            Some(Timing::Speed(speed)) => {
                 set(&mut self.speed, format!("$VEL.CP = {}", fixed(speed, 6)))
             }
-            Some(Pace::Share(share)) => set(
+            Some(Timing::Share(share)) => set(
                 &mut self.share,
                 format!("BAS (#VEL_PTP,{})", fixed(100.0 * share, 2)),
             ),
-            Some(Pace::Turning(_) | Pace::Duration(_)) | None => {}
+            Some(Timing::Turning(_) | Timing::Duration(_)) | None => {}
         }
         let blend = match one.zone {
             Zone::Within(radius) => {
@@ -414,9 +414,9 @@ impl Reader {
         if !is_joint && matches!(target, Target::Joints(_)) {
             return Err(line.refuse("a pose before it: lines go to no joint angles"));
         }
-        let pace = match is_joint {
-            true => self.share.map(Pace::Share),
-            false => self.speed.map(Pace::Speed),
+        let timing = match is_joint {
+            true => self.share.map(Timing::Share),
+            false => self.speed.map(Timing::Speed),
         };
         if self.spline.is_some() && word == "SPTP" {
             zone = Zone::Through;
@@ -424,7 +424,7 @@ impl Reader {
         self.program.steps.push(Step::Move(Move {
             way: if is_joint { Way::Joint } else { Way::Line },
             target,
-            pace,
+            timing,
             zone,
         }));
         Ok(())
@@ -468,7 +468,7 @@ impl Reader {
         let scale = self.total.take().unwrap_or_default() / parts.iter().sum::<f64>();
         for (step, part) in steps.iter_mut().zip(&parts) {
             if let Step::Move(one) = step {
-                one.pace = Some(Pace::Duration(part * scale));
+                one.timing = Some(Timing::Duration(part * scale));
             }
         }
         if let Some(Step::Move(last)) = steps.last_mut() {

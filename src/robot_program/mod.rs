@@ -25,7 +25,7 @@ mod words;
 pub use compared::{Deviation, deviation};
 pub use dialect::Dialect;
 pub use error::ProgramError;
-pub use moves::{Configuration, Frame, Move, Pace, Program, Step, Target, Way, Zone};
+pub use moves::{Configuration, Frame, Move, Program, Step, Target, Timing, Way, Zone};
 pub use planned::{Moves, planned};
 pub use posture::{Posture, configuration};
 pub use ros_bag::bag;

@@ -57,7 +57,7 @@ pub struct Move {
     /// Where it ends.
     pub target: Target,
     /// How fast; none where the program leaves it to the controller.
-    pub pace: Option<Pace>,
+    pub timing: Option<Timing>,
     /// How near it comes.
     pub zone: Zone,
 }
@@ -117,7 +117,7 @@ pub enum Configuration {
 
 /// How fast a move is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Pace {
+pub enum Timing {
     /// Of the tool [m/s].
     Speed(f64),
     /// Of the leading axis [rad/s].

@@ -5,7 +5,7 @@ use glamx::DPose3;
 
 use super::dialect::Dialect;
 use super::error::ProgramError;
-use super::moves::{Configuration, Frame, Move, Pace, Program, Step, Target, Way, Zone};
+use super::moves::{Configuration, Frame, Move, Program, Step, Target, Timing, Way, Zone};
 use super::output::Output;
 use super::posture::{Posture, axes, configuration};
 use crate::arm::chain::{JointKind, MAX_JOINTS};
@@ -27,6 +27,8 @@ const EVEN: (f64, f64) = (0.01, 2e-3);
 /// Widest corner on the edge, and off it [m]; never more than a share of the shorter line beside it [1].
 const CORNER: [f64; 2] = [1e-3, 5e-3];
 const CORNER_SHARE: f64 = 0.4;
+/// Length below which a last piece is no move of its own [m].
+const SHORTEST: f64 = 2e-5;
 /// Speed of the first move, from wherever the arm stands: share of the axes' greatest speed [1], of the leading axis [rad/s].
 const FIRST: (f64, f64) = (0.1, 0.2);
 
@@ -336,10 +338,10 @@ impl Planner<'_> {
                 true => Target::Joints(self.counted(&sample.joints)),
                 false => self.pose(sample)?,
             },
-            pace: Some(match self.dialect {
-                Dialect::Urscript => Pace::Turning(FIRST.1),
-                Dialect::Krl | Dialect::FanucLs => Pace::Share(FIRST.0),
-                Dialect::Rapid => Pace::Speed(FIRST.0),
+            timing: Some(match self.dialect {
+                Dialect::Urscript => Timing::Turning(FIRST.1),
+                Dialect::Krl | Dialect::FanucLs => Timing::Share(FIRST.0),
+                Dialect::Rapid => Timing::Speed(FIRST.0),
             }),
             zone: Zone::Stop,
         })
@@ -353,7 +355,7 @@ impl Planner<'_> {
     ) -> Result<(), ProgramError> {
         // FANUC's moves of axes have times in thousandths alone: its joint angles are gone to on lines.
         let timed = self.moves == Moves::Joint && self.dialect != Dialect::FanucLs;
-        let ends = ends(samples, |from, to| match self.moves {
+        let mut ends = ends(samples, |from, to| match self.moves {
             Moves::Cartesian => is_line(&samples[from..=to], phase == Phase::Follow),
             Moves::Joint => is_in_step(&samples[from..=to], timed),
         });
@@ -361,22 +363,28 @@ impl Planner<'_> {
         let length = |from: usize, to: usize| {
             (samples[to].pose.translation - samples[from].pose.translation).length()
         };
+        // A last piece of next to nothing belongs to the one before it.
+        if let [.., before, last] = ends[..]
+            && length(before, last) < SHORTEST
+        {
+            ends.remove(ends.len() - 2);
+        }
         let mut from = 0;
         for (index, &to) in ends.iter().enumerate() {
             let zone = match ends.get(index + 1) {
                 None => Zone::Stop,
                 Some(&next) => {
                     let shorter = length(from, to).min(length(to, next));
-                    // Makers count in tenths of a micrometre.
+                    // In whole micrometres, as all dialects have them.
                     self.zone(
-                        (1e7 * widest.min(CORNER_SHARE * shorter)).floor() / 1e7,
+                        (1e6 * widest.min(CORNER_SHARE * shorter)).floor() / 1e6,
                         timed,
                     )
                 }
             };
-            let pace = match timed {
-                true => Pace::Duration(samples[to].time - samples[from].time),
-                false => Pace::Speed(peak(&samples[from..=to])),
+            let timing = match timed {
+                true => Timing::Duration(samples[to].time - samples[from].time),
+                false => Timing::Speed(peak(&samples[from..=to])),
             };
             steps.push(Step::Move(Move {
                 way: if timed { Way::Joint } else { Way::Line },
@@ -384,7 +392,7 @@ impl Planner<'_> {
                     Moves::Joint => Target::Joints(self.counted(&samples[to].joints)),
                     Moves::Cartesian => self.pose(&samples[to])?,
                 },
-                pace: Some(pace),
+                timing: Some(timing),
                 zone,
             }));
             from = to;

@@ -11,7 +11,7 @@ use glam::{DQuat, DVec3};
 use glamx::DPose3;
 
 use super::error::ProgramError;
-use super::moves::{Configuration, Frame, Move, Pace, Program, Step, Target, Way, Zone};
+use super::moves::{Configuration, Frame, Move, Program, Step, Target, Timing, Way, Zone};
 use super::orientation::{fixed, list};
 use super::words::{Line, Token};
 
@@ -146,10 +146,10 @@ fn move_text(one: &Move) -> String {
         }
     };
     let speed = |speed: f64| format!("[{},500,5000,1000]", fixed(1e3 * speed, 4));
-    let pace = match one.pace {
-        Some(Pace::Speed(value)) => speed(value),
-        Some(Pace::Duration(time)) => format!("v100\\T:={}", fixed(time, 6)),
-        Some(Pace::Turning(_) | Pace::Share(_)) | None => "v100".to_owned(),
+    let timing = match one.timing {
+        Some(Timing::Speed(value)) => speed(value),
+        Some(Timing::Duration(time)) => format!("v100\\T:={}", fixed(time, 6)),
+        Some(Timing::Turning(_) | Timing::Share(_)) | None => "v100".to_owned(),
     };
     let zone = match one.zone {
         Zone::Within(radius) => {
@@ -159,7 +159,7 @@ fn move_text(one: &Move) -> String {
         Zone::Through => "z0".to_owned(),
         Zone::Stop | Zone::Share(_) => "fine".to_owned(),
     };
-    format!("{name} {target}, {pace}, {zone}, {TOOL}\\WObj:={FRAME};")
+    format!("{name} {target}, {timing}, {zone}, {TOOL}\\WObj:={FRAME};")
 }
 
 /// Data of a module by name.
@@ -326,16 +326,16 @@ impl Reader {
             line.word("NoEOffs")?;
         }
         line.mark(',')?;
-        let mut pace = Pace::Speed(self.speed(line)?);
+        let mut timing = Timing::Speed(self.speed(line)?);
         if line.takes('\\') {
             let before = line.clone();
             let kind = line.word("T or V")?;
             line.mark(':')?;
             line.mark('=')?;
             let value = line.positive(false)?;
-            pace = match kind.as_str() {
-                "T" => Pace::Duration(value),
-                "V" => Pace::Speed(1e-3 * value),
+            timing = match kind.as_str() {
+                "T" => Timing::Duration(value),
+                "V" => Timing::Speed(1e-3 * value),
                 _ => return Err(before.refuse("T or V")),
             };
         }
@@ -362,7 +362,7 @@ impl Reader {
                 Way::Joint
             },
             target,
-            pace: Some(pace),
+            timing: Some(timing),
             zone,
         }));
         Ok(())

@@ -13,7 +13,7 @@ use glam::{DQuat, DVec3};
 use glamx::DPose3;
 
 use super::error::ProgramError;
-use super::moves::{Frame, Move, Pace, Program, Step, Target, Way, Zone};
+use super::moves::{Frame, Move, Program, Step, Target, Timing, Way, Zone};
 use super::orientation::{fixed, list, rotation_vector};
 use super::words::{Line, Token};
 
@@ -94,16 +94,16 @@ fn move_text(one: &Move, framed: bool) -> String {
             }
         }
     };
-    let pace = match one.pace {
-        Some(Pace::Speed(speed) | Pace::Turning(speed)) => format!(", v={}", fixed(speed, 6)),
-        Some(Pace::Duration(time)) => format!(", t={}", fixed(time, 6)),
-        Some(Pace::Share(_)) | None => String::new(),
+    let timing = match one.timing {
+        Some(Timing::Speed(speed) | Timing::Turning(speed)) => format!(", v={}", fixed(speed, 6)),
+        Some(Timing::Duration(time)) => format!(", t={}", fixed(time, 6)),
+        Some(Timing::Share(_)) | None => String::new(),
     };
     let zone = match one.zone {
         Zone::Within(radius) => format!(", r={}", fixed(radius, 6)),
         Zone::Stop | Zone::Share(_) | Zone::Through => String::new(),
     };
-    format!("{name}({target}, a={acceleration}{pace}{zone})")
+    format!("{name}({target}, a={acceleration}{timing}{zone})")
 }
 
 /// A value of the language, as far as moves have them.
@@ -303,11 +303,15 @@ impl Reader {
             }
         }
         let positive = |key: &str| given.get(key).copied().filter(|value| *value > 0.0);
-        let speed = positive("v").map(if is_joint { Pace::Turning } else { Pace::Speed });
+        let speed = positive("v").map(if is_joint {
+            Timing::Turning
+        } else {
+            Timing::Speed
+        });
         self.program.steps.push(Step::Move(Move {
             way: if is_joint { Way::Joint } else { Way::Line },
             target,
-            pace: positive("t").map(Pace::Duration).or(speed),
+            timing: positive("t").map(Timing::Duration).or(speed),
             zone: positive("r").map_or(Zone::Stop, Zone::Within),
         }));
         Ok(())

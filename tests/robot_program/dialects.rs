@@ -3,7 +3,7 @@
 use glam::{DMat3, DQuat, DVec3};
 use glamx::DPose3;
 use idc_cell::robot_program::{
-    Configuration, Dialect, Frame, Move, Pace, Posture, Program, Step, Target, Way, Zone,
+    Configuration, Dialect, Frame, Move, Posture, Program, Step, Target, Timing, Way, Zone,
     configuration, deviation, read, write,
 };
 
@@ -31,7 +31,7 @@ fn frame(pose: DPose3) -> Frame {
 }
 
 /// A configuration as the dialect has them.
-fn stands(dialect: Dialect, index: i32) -> Option<Configuration> {
+fn posed(dialect: Dialect, index: i32) -> Option<Configuration> {
     let turns = [index % 3 - 1, -(index % 2), 1];
     match dialect {
         Dialect::Urscript => None,
@@ -89,9 +89,9 @@ fn drawn(dialect: Dialect, seed: u64) -> Program {
                 way: Way::Line,
                 target: Target::Pose {
                     pose: pose(&mut state),
-                    configuration: stands(dialect, index),
+                    configuration: posed(dialect, index),
                 },
-                pace: Some(Pace::Speed(speed.max(0.0085))),
+                timing: Some(Timing::Speed(speed.max(0.0085))),
                 zone: if index == 39 {
                     Zone::Stop
                 } else {
@@ -109,10 +109,10 @@ fn drawn(dialect: Dialect, seed: u64) -> Program {
             steps.push(Step::Move(Move {
                 way: if timed { Way::Joint } else { Way::Line },
                 target: Target::Joints(joints),
-                pace: Some(if timed {
-                    Pace::Duration(0.2 + 0.1 * noise(&mut state))
+                timing: Some(if timed {
+                    Timing::Duration(0.2 + 0.1 * noise(&mut state))
                 } else {
-                    Pace::Speed(0.1)
+                    Timing::Speed(0.1)
                 }),
                 zone: match dialect {
                     _ if is_last => Zone::Stop,
@@ -142,7 +142,7 @@ fn what_is_written_is_read_back() {
             worst.position = worst.position.max(found.position);
             worst.angle = worst.angle.max(found.angle);
             worst.joint = worst.joint.max(found.joint);
-            worst.pace = worst.pace.max(found.pace);
+            worst.timing = worst.timing.max(found.timing);
             let notes = |program: &Program| -> Vec<String> {
                 let notes = program.steps.iter().filter_map(|step| match step {
                     Step::Note(note) if note.starts_with("pass") => Some(note.clone()),
@@ -159,7 +159,7 @@ fn what_is_written_is_read_back() {
             1e6 * worst.position,
             worst.angle.to_degrees(),
             worst.joint.to_degrees(),
-            100.0 * worst.pace
+            100.0 * worst.timing
         );
         assert!(
             worst.position < 1e-6 && worst.angle.to_degrees() < 1e-3,
@@ -171,7 +171,7 @@ fn what_is_written_is_read_back() {
             1e-6
         };
         assert!(
-            worst.joint.to_degrees() < digits && worst.pace < 1e-3,
+            worst.joint.to_degrees() < digits && worst.timing < 1e-3,
             "{worst:?}"
         );
     }
@@ -187,7 +187,7 @@ fn only(dialect: Dialect, rotation: DQuat) -> String {
                 pose: DPose3::from_parts(DVec3::new(0.1, -0.2, 0.3), rotation),
                 configuration: None,
             },
-            pace: Some(Pace::Speed(0.1)),
+            timing: Some(Timing::Speed(0.1)),
             zone: Zone::Stop,
         })],
     };
@@ -401,8 +401,8 @@ struct Published {
     dialect: Dialect,
     text: &'static str,
     moves: usize,
-    /// Number of a move with its position [mm] and pace.
-    known: (usize, [f64; 3], Pace),
+    /// Number of a move with its position [mm] and timing.
+    known: (usize, [f64; 3], Timing),
     spoiled: [(&'static str, &'static str); 10],
 }
 
@@ -412,7 +412,7 @@ const PUBLISHED: [Published; 8] = [
         dialect: Dialect::Urscript,
         text: "def my_prog():\n  set_digital_out(1, True)\n  movej(p[-0.25, -0.35, 0.75, 0.8, 1.1, 3.0], a=1.2, v=0.25, r=0)\n  movel(p[-0.25, 0.2, 0.4, 0, 0, 3.14], a=0.5, v=0.1, r=0.01)\n  textmsg(\"done\")\nend\n",
         moves: 2,
-        known: (1, [-250.0, 200.0, 400.0], Pace::Speed(0.1)),
+        known: (1, [-250.0, 200.0, 400.0], Timing::Speed(0.1)),
         spoiled: [
             ("def my_prog():", "def my_prog()"),
             ("end\n", ""),
@@ -426,12 +426,12 @@ const PUBLISHED: [Published; 8] = [
             ("textmsg(\"done\")", "textmsg(\"done)"),
         ],
     },
-    // As in <https://github.com/kobbled/tp_plus> is for FANUC, a program of PolyScope with a feature: frame, speeds by name, moves in the frame.
+    // As PolyScope writes strokes in a feature (the manual, "pose_trans"): speeds by name, moves in the frame.
     Published {
         dialect: Dialect::Urscript,
         text: "def draw():\n  global accel_mss = 0.6\n  global speed_ms = 0.05\n  set_tcp(p[0.0, 0.0, 0.12, 0.0, 0.0, 0.0])\n  feature = p[0.3, -0.4, 0.1, 0.0, 2.2, 0.0]\n  q_start = [-1.57, -1.2, -1.8, 2.9, -1.57, 0]\n  movej(q_start, 1.4, 1.05, 0, 0)\n  movel(pose_trans(feature, p[0.01, 0.18, 0.02, 0, 0, 0]), accel_mss, speed_ms, 0, 0.001)\n  movel(pose_trans(feature, p[0.05, 0.18, 0.02, 0, 0, 0]), accel_mss, speed_ms, 4)\n  set_standard_analog_out(0, 0.5)\n  sleep(0.5)\nend\ndraw()\n",
         moves: 3,
-        known: (1, [10.0, 180.0, 20.0], Pace::Speed(0.05)),
+        known: (1, [10.0, 180.0, 20.0], Timing::Speed(0.05)),
         spoiled: [
             ("feature = p[", "part = p["),
             ("accel_mss = 0.6", "accel_mss = "),
@@ -450,7 +450,7 @@ const PUBLISHED: [Published; 8] = [
         dialect: Dialect::Krl,
         text: "DEF Milling ( )\n\n$BASE = {FRAME: X 10.000,Y -900.000,Z 0.000,A 0.000,B 0.000,C 0.000}\n$TOOL = {FRAME: X 400.5,Y -4.5,Z 100.25,A -0.000,B 90.000,C 0.000}\n\n$VEL.CP = 1.00000\n\nPTP {A1 100.5,A2 -45.25,A3 140.5,A4 107.5,A5 -87.5,A6 6.25}\nLIN {X -0.000,Y -0.000,Z 6.350,A -180.000,B 0.000,C -180.000}\n\n$VEL.CP = 0.02117\nLIN {X 250.000,Y 0.000,Z 6.350,A 180.000,B 0.000,C -180.000}\nLIN {X 250.000,Y 300.000,Z 6.350,A -160.000,B 0.000,C 180.000}\nEND\n",
         moves: 4,
-        known: (2, [250.0, 0.0, 6.35], Pace::Speed(0.02117)),
+        known: (2, [250.0, 0.0, 6.35], Timing::Speed(0.02117)),
         spoiled: [
             ("DEF Milling ( )", "DEF Milling ("),
             ("\nEND", "\n"),
@@ -469,7 +469,7 @@ const PUBLISHED: [Published; 8] = [
         dialect: Dialect::Krl,
         text: "&ACCESS RVP\n&REL 1\n&PARAM TEMPLATE = C:\\KRC\\Roboter\\Template\\vorgabe\nDEF Cut ( )\nEXT BAS (BAS_COMMAND :IN,REAL :IN )\n;FOLD INI\nBAS (#INITMOV,0)\nBAS (#VEL_PTP,50)\nBAS (#TOOL,1)\nBAS (#BASE,2)\n;ENDFOLD\n$ADVANCE = 3\n$APO.CDIS = 1.5\n$VEL.CP=0.2\nPTP {X 900.5,Y 10.0,Z 700.0,A 0.0,B 90.0,C 0.0,S 'B 110',T 'B 110010',E1 0.0}\nLIN {X 950.0,Y 10.0,Z 700.0,A 0.0,B 90.0,C 0.0,S 6,T 50} C_DIS\nWAIT SEC 0.5\n$ANOUT[1]=0.4\nLIN {X 990.0,Y 10.0,Z 700.0,A 0.0,B 90.0,C 0.0}\nEND\n",
         moves: 3,
-        known: (1, [950.0, 10.0, 700.0], Pace::Speed(0.2)),
+        known: (1, [950.0, 10.0, 700.0], Timing::Speed(0.2)),
         spoiled: [
             ("'B 110'", "'B 120'"),
             ("'B 110010'", "'B 1110010'"),
@@ -488,7 +488,7 @@ const PUBLISHED: [Published; 8] = [
         dialect: Dialect::Rapid,
         text: "! TACO Target Robot: T_ROB1\nMODULE MainModule\nVAR speeddata Work:= [100,20,5000,1000];\nPERS tooldata custom_tool1 := [TRUE, [[-140.5,-150.5,30.25], [0.707107,0.5,-0.5,0]], [0.1,[0.10,0.00,0.00],[1,0,0,0],0,0,0]];\nPROC Main()\nConfL \\Off;\nMoveJ [[20,400,140.5],[-0.174713,0.907209,0.375778,0.072368],[0,-1,-1,0],[0,9E9,9E9,9E9,9E9,9E9]],Work,z1,custom_tool1\\WObj:=WObj0;\nIF TestDI(Ready) THEN\nWaitDI Ready, 0;\nENDIF\nWaitTime 0.9;\nSetDO Gripper_open, 0;\nMoveL [[20,500,40.5],[-0.174713,0.907209,0.375778,0.072368],[0,-1,-1,0],[0,9E9,9E9,9E9,9E9,9E9]],Work,fine,custom_tool1\\WObj:=WObj0;\nENDPROC\nENDMODULE\n",
         moves: 2,
-        known: (1, [20.0, 500.0, 40.5], Pace::Speed(0.1)),
+        known: (1, [20.0, 500.0, 40.5], Timing::Speed(0.1)),
         spoiled: [
             ("[0.707107,0.5,-0.5,0]", "[0.8,0.5,-0.5,0]"),
             ("0.375778", "0.575778"),
@@ -502,12 +502,12 @@ const PUBLISHED: [Published; 8] = [
             ("fine,custom_tool1\\WObj:=", "fine,custom_tool1\\Wobject:="),
         ],
     },
-    // As RobotStudio writes paths, in <https://github.com> many: targets by name, a work object.
+    // As RobotStudio writes paths (the manual, "robtarget"): targets by name, a work object.
     Published {
         dialect: Dialect::Rapid,
         text: "MODULE Module1\n    CONST jointtarget Home:=[[0,0,0,0,30,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]];\n    TASK PERS wobjdata Table:=[FALSE,TRUE,\"\",[[450,550,77],[0.707106781,0,0,-0.707106781]],[[0,0,0],[1,0,0,0]]];\n    CONST robtarget Target_10:=[[450.5,700.25,240],[0,0.707106781,0.707106781,0],[0,1,-2,0],\n        [9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]];\n    CONST robtarget Target_20:=[[450.5,700.25,90],[0,0.707106781,0.707106781,0],[0,0,0,0],[9E+09,9E+09,9E+09,9E+09,9E+09,9E+09]];\n\n    PROC Path_10()\n        MoveAbsJ Home,v500,z100,tool0;\n        MoveL Target_10,v500,fine,tool0\\WObj:=Table;\n        SetAO aoForce, 4.5;\n        MoveL Target_20,v20\\T:=2.5,z0,tool0\\WObj:=Table;\n    ENDPROC\nENDMODULE\n",
         moves: 3,
-        known: (2, [450.5, 700.25, 90.0], Pace::Duration(2.5)),
+        known: (2, [450.5, 700.25, 90.0], Timing::Duration(2.5)),
         spoiled: [
             ("Home:=[[0,0,0,0,30,0]", "Home:=[[0,0,0,0,30]"),
             ("Target_10:=", "Target_11:="),
@@ -526,7 +526,7 @@ const PUBLISHED: [Published; 8] = [
         dialect: Dialect::FanucLs,
         text: "/PROG  TEST\n/ATTR\nOWNER\t\t= MNEDITOR;\nCOMMENT\t\t= \"\";\nTCD:  STACK_SIZE\t= 0,\n      TASK_PRIORITY\t= 50;\nDEFAULT_GROUP\t= 1,*,*,*,*;\n/APPL\n\nAUTO_SINGULARITY_HEADER;\n  ENABLE_SINGULARITY_AVOIDANCE   : FALSE;\n/MN\n   1:J P[2:test 123] 100% FINE    ;\n   2:J P[1] 100% FINE    ;\n/POS\nP[1]{\n   GP1:\n\tUF : 0, UT : 1,\t\tCONFIG : 'N U T, 0, 0, 0',\n\tX =  1295.220  mm,\tY =  -398.150  mm,\tZ =  1301.200  mm,\n\tW =   -31.640 deg,\tP =    88.200 deg,\tR =   147.540 deg\n};\nP[2:\"test 123\"]{\n   GP1:\n\tUF : 0, UT : 1,\t\tCONFIG : 'F D B, -1, -1, 1',\n\tX =  1153.500  mm,\tY = -1754.150  mm,\tZ =   493.000  mm,\n\tW =    90.147 deg,\tP =      .582 deg,\tR =     -.593 deg\n};\n/END\n",
         moves: 2,
-        known: (0, [1153.5, -1754.15, 493.0], Pace::Share(1.0)),
+        known: (0, [1153.5, -1754.15, 493.0], Timing::Share(1.0)),
         spoiled: [
             ("J P[1] 100%", "J P[3] 100%"),
             ("100% FINE    ;\n   2", "110% FINE    ;\n   2"),
@@ -548,7 +548,7 @@ const PUBLISHED: [Published; 8] = [
         dialect: Dialect::FanucLs,
         text: "/PROG  CALIB_C0\n/ATTR\nOWNER\t\t= MNEDITOR;\n/MN\n   1:   ;\n   2:  UTOOL_NUM=4 ;\n   3:  UFRAME_NUM=0 ;\n   4:  OVERRIDE=30% ;\n   5:   ;\n   6:  !TRANSLATION ;\n   7:J P[1] 20% CNT50 ACC50    ;\n   8:L P[2:REF] 100mm/sec CNT100    ;\n   9:  WAIT    .50(sec) ;\n  10:  AO[1:COMPENSATION]=350 ;\n  11:  CALL VACUUM_OFF    ;\n  12:L P[2:REF] 25.5cm/min FINE    ;\n/POS\nP[1]{\n   GP1:\n\tUF : 0, UT : 4,\n\tJ1=     5.500 deg,\tJ2=    12.250 deg,\tJ3=   -45.000 deg,\n\tJ4=     0.000 deg,\tJ5=     -.500 deg,\tJ6=   200.000 deg\n};\nP[2:\"REF\"]{\n   GP1:\n\tUF : 0, UT : 4,\t\tCONFIG : 'N U T, 0, 0, 0',\n\tX =  -333.800  mm,\tY =  1579.200  mm,\tZ =   356.600  mm,\n\tW =  -175.389 deg,\tP =   -39.284 deg,\tR =     -.384 deg\n};\n/END\n",
         moves: 3,
-        known: (1, [-333.8, 1579.2, 356.6], Pace::Speed(0.1)),
+        known: (1, [-333.8, 1579.2, 356.6], Timing::Speed(0.1)),
         spoiled: [
             ("UTOOL_NUM=4", "UTOOL_NUM=on"),
             ("20% CNT50", "20mm/sec CNT50"),
@@ -570,7 +570,7 @@ fn programs_in_the_form_of_published_ones_are_read() {
         dialect,
         text,
         moves,
-        known: (index, position, pace),
+        known: (index, position, timing),
         ..
     } in &PUBLISHED
     {
@@ -585,9 +585,9 @@ fn programs_in_the_form_of_published_ones_are_read() {
             (pose.translation * 1e3 - DVec3::from_array(*position)).length() < 1e-9,
             "{pose:?}"
         );
-        let ((Some(Pace::Speed(found)), Pace::Speed(wanted))
-        | (Some(Pace::Duration(found)), Pace::Duration(wanted))
-        | (Some(Pace::Share(found)), Pace::Share(wanted))) = (one.pace, *pace)
+        let ((Some(Timing::Speed(found)), Timing::Speed(wanted))
+        | (Some(Timing::Duration(found)), Timing::Duration(wanted))
+        | (Some(Timing::Share(found)), Timing::Share(wanted))) = (one.timing, *timing)
         else {
             panic!("{one:?}");
         };
