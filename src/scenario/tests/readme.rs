@@ -283,7 +283,14 @@ fn every_unit_is_that_of_the_key() {
     for (key, row) in [Cell, Bench].into_iter().flat_map(rows) {
         let unit = Unit::of_key(&key);
         if unit.is_one() {
-            let words = ["number", "whole number", "text", "true or false", "file"];
+            let words = [
+                "number",
+                "whole number",
+                "text",
+                "true or false",
+                "file",
+                "list",
+            ];
             let is_word = words.contains(&row.unit.as_str()) || row.unit.starts_with("table");
             assert!(is_word, "{key}: {}", row.unit);
         } else {
@@ -323,6 +330,9 @@ fn every_default_is_what_leaving_the_key_out_does() {
                         "the device's",
                         "that of",
                         "sample",
+                        "in URScript",
+                        "by the robot's name",
+                        "see docs/",
                     ]
                     .iter()
                     .any(|word| row.default.contains(word));
