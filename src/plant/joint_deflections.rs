@@ -238,21 +238,12 @@ impl<'a> JointDeflections<'a> {
                 .sum();
             right[j] += momentum / h;
         }
-        if self
-            .inverse
-            .as_ref()
-            .is_none_or(|(known, _)| !known.serves(&key))
-        {
-            let matrix = DMatrix::from_fn(self.count, self.count, |j, k| {
+        if !(self.inverse.as_ref()).is_some_and(|(known, _)| known.serves(&key)) {
+            self.invert(key, |j, k| {
                 let own = if j == k { halved[j] } else { 0.0 };
                 let bent = normal[j] + share * axial[j];
                 inertia[(j, k)] / h + own + implicit * bent * normal[k]
             });
-            // A mass matrix with springs has an inverse.
-            let inverse = matrix
-                .try_inverse()
-                .unwrap_or_else(|| DMatrix::zeros(self.count, self.count));
-            self.inverse = Some((key, inverse.as_slice().to_vec()));
         }
         let freely = self.solve(&right);
         let dragged = self.solve(&tangential);
@@ -274,6 +265,16 @@ impl<'a> JointDeflections<'a> {
             self.speed[j] = end;
         }
         deflected
+    }
+
+    /// Finds the inverse of what multiplies the speeds.
+    fn invert(&mut self, key: Key, element: impl FnMut(usize, usize) -> f64) {
+        let matrix = DMatrix::from_fn(self.count, self.count, element);
+        // A mass matrix with springs has an inverse.
+        let inverse = matrix
+            .try_inverse()
+            .unwrap_or_else(|| DMatrix::zeros(self.count, self.count));
+        self.inverse = Some((key, inverse.as_slice().to_vec()));
     }
 
     /// Joints whose teeth are apart, one bit each.

@@ -147,12 +147,12 @@ impl Deviation {
                 return Err("another zone");
             }
         }
-        let (one, other) = match (one.timing, other.timing) {
-            (Some(Timing::Speed(one)), Some(Timing::Speed(other)))
-            | (Some(Timing::Turning(one)), Some(Timing::Turning(other)))
-            | (Some(Timing::Duration(one)), Some(Timing::Duration(other)))
-            | (Some(Timing::Share(one)), Some(Timing::Share(other))) => (one, other),
-            _ => return Err("another kind of speed"),
+        let ((Some(Timing::Speed(one)), Some(Timing::Speed(other)))
+        | (Some(Timing::Turning(one)), Some(Timing::Turning(other)))
+        | (Some(Timing::Duration(one)), Some(Timing::Duration(other)))
+        | (Some(Timing::Share(one)), Some(Timing::Share(other)))) = (one.timing, other.timing)
+        else {
+            return Err("another kind of speed");
         };
         self.timing = self.timing.max((one - other).abs() / one);
         Ok(())

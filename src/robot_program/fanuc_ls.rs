@@ -191,9 +191,10 @@ pub(super) fn read(text: &str) -> Result<Program, ProgramError> {
             .filter(|rest| !rest.starts_with('/'))
         {
             let mut words = rest.split_whitespace();
-            part = words.next().unwrap_or_default().to_owned();
+            words.next().unwrap_or_default().clone_into(&mut part);
             if part == "PROG" {
-                reader.program.name = words.next().unwrap_or_default().to_owned();
+                let name = words.next().unwrap_or_default();
+                name.clone_into(&mut reader.program.name);
             }
             continue;
         }

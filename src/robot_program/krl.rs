@@ -148,7 +148,7 @@ impl Written {
         };
         match one.timing {
             Some(Timing::Speed(speed)) => {
-                set(&mut self.speed, format!("$VEL.CP = {}", fixed(speed, 6)))
+                set(&mut self.speed, format!("$VEL.CP = {}", fixed(speed, 6)));
             }
             Some(Timing::Share(share)) => set(
                 &mut self.share,
@@ -269,7 +269,7 @@ impl Reader {
             "BAS" => self.basic(line)?,
             "PTP" | "SPTP" | "LIN" | "SLIN" => self.motion(line, &word)?,
             "PTP_SPLINE" if self.spline.is_none() => {
-                self.spline = Some((Vec::new(), self.program.steps.len()))
+                self.spline = Some((Vec::new(), self.program.steps.len()));
             }
             "TIME_BLOCK" if self.spline.is_some() => self.time_block(line)?,
             "ENDSPLINE" => self.end_of_spline(&before)?,

@@ -544,7 +544,7 @@ fn wobjdata(line: &mut Line) -> Result<Data, ProgramError> {
     for _ in 0..2 {
         line.mark(',')?;
         line.mark('[')?;
-        whole = whole * pose(line)?;
+        whole *= pose(line)?;
         line.mark(']')?;
     }
     line.mark(']')?;
