@@ -86,7 +86,7 @@ fn what_the_program_is_built_from_is_packed() {
                 folders.push(name);
                 continue;
             }
-            if name.ends_with(".rs") {
+            if path.extension().is_some_and(|ending| ending == "rs") {
                 let text = std::fs::read_to_string(&path).unwrap();
                 let paths = taken_in(&name, &text);
                 included += paths.len();
