@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, Subcommand};
+use clap::{Args, ValueEnum};
 
 use super::error::{AppError, ExitCode};
 use super::files::{OutputFolder, OverwritePolicy, output_folder};
@@ -39,21 +39,17 @@ const TRAJECTORY: &str = "trajectory.csv";
 /// The same as a message of ROS 2.
 const BAG: &str = "trajectory.mcap";
 
+/// What is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Export {
+    /// The planned path of a cell as a program for its robot, and as joints over time.
+    Program,
+}
+
 #[derive(Debug, Args)]
 pub(super) struct ExportArguments {
-    #[command(subcommand)]
+    /// What to write.
     what: Export,
-}
-
-#[derive(Debug, Subcommand)]
-enum Export {
-    /// Write the planned path of a cell as a program for its robot, and as joints over time.
-    #[command(after_help = EXAMPLES)]
-    Program(ProgramArguments),
-}
-
-#[derive(Debug, Args)]
-struct ProgramArguments {
     /// Scenario of a cell.
     scenario: PathBuf,
     /// Language of the program; without it the joints over time alone are written.
@@ -96,8 +92,9 @@ fn ways() -> impl clap::builder::TypedValueParser<Value = Moves> {
 
 /// Writes what was asked for.
 pub(super) fn run(arguments: &ExportArguments) -> Result<ExitCode, AppError> {
-    let Export::Program(arguments) = &arguments.what;
-    program(arguments)
+    match arguments.what {
+        Export::Program => program(arguments),
+    }
 }
 
 /// A program that says what was planned.
@@ -130,7 +127,7 @@ fn checked(
     })
 }
 
-fn program(arguments: &ProgramArguments) -> Result<ExitCode, AppError> {
+fn program(arguments: &ExportArguments) -> Result<ExitCode, AppError> {
     let out = output_folder(arguments.out.as_ref(), &arguments.scenario);
     let policy = OverwritePolicy::of(arguments.force);
     OutputFolder::check(&out, &[TRAJECTORY, BAG], policy)?;
@@ -162,7 +159,7 @@ fn program(arguments: &ProgramArguments) -> Result<ExitCode, AppError> {
 
 /// What was written, and how exactly.
 fn report(
-    arguments: &ProgramArguments,
+    arguments: &ExportArguments,
     folder: &Path,
     all: &[&str],
     written: Option<&Checked>,
