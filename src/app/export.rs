@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::builder::PossibleValue;
 use clap::{Args, ValueEnum};
 
 use super::error::{AppError, ExitCode};
@@ -53,10 +54,10 @@ pub(super) struct ExportArguments {
     /// Scenario of a cell.
     scenario: PathBuf,
     /// Language of the program; without it the joints over time alone are written.
-    #[arg(long, value_parser = dialects())]
+    #[arg(long)]
     dialect: Option<Dialect>,
     /// Whether moves are given by poses of the tool or by joint angles.
-    #[arg(long, default_value = "cartesian", value_parser = ways())]
+    #[arg(long, default_value = "cartesian")]
     moves: Moves,
     /// Folder for the program, trajectory.csv and trajectory.mcap [default: runs/<scenario name>].
     #[arg(long, help_heading = "Output")]
@@ -72,22 +73,24 @@ pub(super) struct ExportArguments {
     json: bool,
 }
 
-fn dialects() -> impl clap::builder::TypedValueParser<Value = Dialect> {
-    use clap::builder::{PossibleValuesParser, TypedValueParser as _};
-    PossibleValuesParser::new(Dialect::ALL.map(Dialect::name)).map(|name| {
-        let found = Dialect::ALL
-            .into_iter()
-            .find(|dialect| dialect.name() == name);
-        found.unwrap_or(Dialect::Urscript)
-    })
+impl ValueEnum for Dialect {
+    fn value_variants<'a>() -> &'a [Self] {
+        &Self::ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.name()))
+    }
 }
 
-fn ways() -> impl clap::builder::TypedValueParser<Value = Moves> {
-    use clap::builder::{PossibleValuesParser, TypedValueParser as _};
-    PossibleValuesParser::new(Moves::ALL.map(Moves::name)).map(|name| {
-        let found = Moves::ALL.into_iter().find(|moves| moves.name() == name);
-        found.unwrap_or(Moves::Cartesian)
-    })
+impl ValueEnum for Moves {
+    fn value_variants<'a>() -> &'a [Self] {
+        &Self::ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        Some(PossibleValue::new(self.name()))
+    }
 }
 
 /// Writes what was asked for.

@@ -218,7 +218,7 @@ impl<P: Borrow<DeviceParameters>> Device<P> {
         let volumes = self.smallest_volumes(motion, dt);
         let air = AIR_LIMIT / self.air_rate(volumes, &state.disturbance);
         if !L::MOVES {
-            return air.min(self.line_substep);
+            return air;
         }
         // What the valve may let in during the step.
         let outlet = self.parameters().gas.atmosphere + state.regulator.outlet;
@@ -310,7 +310,7 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
     ) -> Outside<L::Now> {
         let (mut from, mut left) = (start, h);
         let mut events = 0;
-        while events < MOST_EVENTS && L::MOVES {
+        while events < MOST_EVENTS {
             let mode = self.mode(&from.load, flow.motion);
             let tried = left.min(self.line_part);
             let step = self.step::<LEDGER>(flow, &from, tried, mode);
@@ -424,7 +424,7 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
         })
     }
 
-    /// One step.
+    /// One Runge-Kutta step, or one of a line.
     fn step<const LEDGER: bool>(
         &self,
         start: &Flow,
@@ -432,20 +432,9 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
         h: f64,
         mode: Mode,
     ) -> Step<L::Now> {
-        match &self.device.parameters().hose {
-            None => self.runge_kutta_step::<LEDGER>(start, from, h, mode),
-            Some(hose) => self.line_step::<LEDGER>(hose, start, from, h, mode),
+        if let Some(hose) = &self.device.parameters().hose {
+            return self.line_step::<LEDGER>(hose, start, from, h, mode);
         }
-    }
-
-    /// One Runge-Kutta step.
-    fn runge_kutta_step<const LEDGER: bool>(
-        &self,
-        start: &Flow,
-        from: &Outside<L::Now>,
-        h: f64,
-        mode: Mode,
-    ) -> Step<L::Now> {
         let [middle, end] = self.ahead(from, h);
         let rates = |flow: &Flow, at: &Outside<L::Now>| {
             self.rates::<LEDGER>(flow, start.motion.stroke, at, mode)
@@ -470,7 +459,8 @@ impl<L: Load, P: Borrow<DeviceParameters>> Surroundings<'_, L, P> {
     fn is_too_long(&mut self, step: &Step<L::Now>, length: f64) -> bool {
         if step.error <= LINE_ERROR {
             if step.error < LINE_ERROR * FAR_BELOW {
-                self.line_part = 2.0 * length;
+                // Also behind a change of mode, whose last piece is short for another reason.
+                self.line_part = self.line_part.max(2.0 * length);
             }
             return false;
         }

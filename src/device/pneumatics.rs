@@ -4,7 +4,7 @@ use std::borrow::Borrow;
 
 use super::leaks::LeakFlows;
 use super::load::{PistonMotion, Predicted};
-use super::rates::{PistonRates, longest_line_step};
+use super::rates::PistonRates;
 use super::state::{AirState, DeviceState, Disturbance, EnergyLedger};
 use super::{DeviceParameters, Load};
 use crate::physics::chamber::Chamber;
@@ -46,8 +46,6 @@ pub struct Device<P = DeviceParameters> {
     chamber_rate_volume: f64,
     /// The same of a further opening, by its area [m/s].
     leak_rate: f64,
-    /// Longest sub-step that a line, with the reservoir before it, is taken in [s].
-    pub(super) line_substep: f64,
     /// Rate at which a reservoir without a line is drawn from or filled [1/s].
     reservoir_rate: f64,
 }
@@ -85,7 +83,6 @@ impl<P: Borrow<DeviceParameters>> Device<P> {
                 // With a line it is implicit.
                 _ => 0.0,
             },
-            line_substep: longest_line_step(own, rate_volume(valve.supply_conductance)),
             flow,
             valve,
             parameters,

@@ -1,12 +1,8 @@
-//! Rates of the piston's swing on what it meets within a step, and of a line, for the choice of sub-steps.
+//! Rates of the piston's swing on what it meets within a step, for the choice of sub-steps.
 
 use super::DeviceParameters;
 use super::load::{Load, PistonMotion};
 
-/// Longest sub-step that a line is taken in however fast it is [s], for accuracy alone: tests/equations/lines.rs.
-const LONGEST: f64 = 2.5e-4;
-/// Largest sub-step of a slow line times its rate [1].
-const RATE_LIMIT: f64 = 1.2;
 /// Approach of the piston to something in a step, beside its way at speed and under pressure [m].
 const MARGIN: f64 = 3e-4;
 
@@ -60,20 +56,4 @@ impl PistonRates {
         }
         fastest
     }
-}
-
-/// Longest sub-step [s] for a line, if there is one, before a valve that lets `valve_rate` [m3/s] through at most, as a rate times a volume.
-pub(super) fn longest_line_step(parameters: &DeviceParameters, valve_rate: f64) -> f64 {
-    let Some(hose) = &parameters.hose else {
-        return f64::INFINITY;
-    };
-    let gas = &parameters.gas;
-    let rt = gas.specific_gas_constant * gas.temperature;
-    let through = rt / hose.resistance_at_rest(gas.atmosphere);
-    // As a whole: what segments exchange faster than that follows, and is implicit.
-    let mut rate = (valve_rate + through) / hose.volume;
-    if let Some(reservoir) = &parameters.supply_reservoir {
-        rate += reservoir.rate(gas) + through / reservoir.volume;
-    }
-    LONGEST.max(RATE_LIMIT / rate)
 }

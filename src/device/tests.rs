@@ -358,3 +358,60 @@ fn a_late_valve_does_what_a_prompt_one_does_that_is_commanded_later() {
     }
     assert!((late[600] - prompt[600]).abs() > 1e-3);
 }
+
+/// A wall that pushes, and the lengths of the sub-steps that were taken [s].
+struct Wall {
+    position: f64,
+    lengths: std::cell::RefCell<Vec<f64>>,
+}
+
+impl Load for Wall {
+    type Now = ();
+
+    fn now(&self, _: f64) {}
+
+    fn force(&self, (): &(), motion: PistonMotion, touching: bool) -> f64 {
+        match touching {
+            true => -1e5 * (motion.stroke - self.position) - 300.0 * motion.speed,
+            false => 0.0,
+        }
+    }
+
+    fn touches(&self, (): &(), motion: PistonMotion) -> bool {
+        motion.stroke > self.position
+    }
+
+    fn note(&self, _: f64, length: f64, _: [PistonMotion; 2]) {
+        self.lengths.borrow_mut().push(length);
+    }
+
+    fn rate(&self) -> f64 {
+        200.0
+    }
+}
+
+// A sub-step that was cut at a contact had those behind it begin as short as its last piece, and double from there.
+#[test]
+fn a_contact_that_is_met_leaves_the_sub_steps_behind_it_as_long_as_they_were() {
+    let device = Device::new(DeviceParameters::default());
+    let (dt, count) = (1e-3, 40);
+    for place in 1..20 {
+        let mut state = device.at_rest(0.02, 2e5);
+        let mut motion = PistonMotion {
+            stroke: 0.02,
+            speed: 0.2,
+        };
+        let wall = Wall {
+            position: 0.02 + 0.2 * dt * f64::from(place) / 20.0,
+            lengths: std::cell::RefCell::default(),
+        };
+        device.advance_loaded::<_, true>(&mut state, &mut motion, 2e5, &wall, dt, count);
+        let lengths = wall.lengths.borrow();
+        let whole = dt / count as f64;
+        let short = lengths.iter().filter(|length| **length < 0.99 * whole);
+        assert!(motion.stroke > wall.position, "{place}: never touched");
+        assert!(short.count() <= 2, "{place}: {lengths:?}");
+        let sum: f64 = lengths.iter().sum();
+        assert!((sum - dt).abs() < 1e-12);
+    }
+}

@@ -24,6 +24,8 @@ pub mod torques;
 pub use choice::Outline;
 pub use error::{Obstacle, PlanError};
 pub use plan::{Plan, Stretch};
+#[cfg(feature = "cli")]
+pub(crate) use posture::rotation_vector;
 pub use reference::Reference;
 pub use request::{Pass, Phase, PlanRequest};
 pub use toolpath::{ToolAxis, ToolPath, ToolStation};

@@ -438,8 +438,8 @@ fn tilt(from: DVec3, to: DVec3) -> DVec3 {
     }
 }
 
-/// Axis times angle of a rotation, the shorter way round; exact for small angles, unlike glam's `to_scaled_axis`.
-fn rotation_vector(rotation: DQuat) -> DVec3 {
+/// Axis times angle of a rotation, the shorter way round; exact for small angles, unlike glam's `to_scaled_axis` [rad].
+pub(crate) fn rotation_vector(rotation: DQuat) -> DVec3 {
     let rotation = if rotation.w < 0.0 {
         -rotation
     } else {

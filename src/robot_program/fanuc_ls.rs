@@ -1,8 +1,7 @@
 //! TP programs of FANUC as text (.ls).
 //!
-//! Written from "FANUC Robot series R-30iB/R-30iB Mate controller, Operator's Manual (Basic Operation)", B-83284EN (<https://www.fanucamerica.com>, text of an older edition:
-//! <https://www.therobotguyllc.com/wp-content/uploads/2019/07/Handling-Tool-Manual.pdf>), chapters 4 "Program structure" (motion instructions: position data, configuration, feed rate, positioning
-//! path; register, frame, wait and analog instructions) and 5 "Programming". X, Y, Z are in millimetres; W, P, R in degrees turn about the fixed x, y, z. F or N says on which side joint 5 is,
+//! After "FANUC Robot series R-30iB/R-30iB Mate controller, Operator's Manual (Basic Operation)", B-83284EN: motion instructions (position data, configuration, feed rate, positioning path),
+//! register, frame, wait and analog instructions. X, Y, Z are in millimetres; W, P, R in degrees turn about the fixed x, y, z. F or N says on which side joint 5 is,
 //! U or D the elbow, T or B the shoulder; the turns of joints 1, 4, 6 are 0 from -179 to 179 degrees. Which side of joint 5 is N depends on the model's sense of counting: here N is below 0.
 
 use std::collections::BTreeMap;

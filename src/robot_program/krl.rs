@@ -1,6 +1,6 @@
 //! KRL, the language of KUKA.
 //!
-//! Written from "KUKA System Software 8.3, Operating and Programming Instructions for System Integrators" (KSS 8.3 END V1), chapters "Motion programming" (status and
+//! After "KUKA System Software 8.3, Operating and Programming Instructions for System Integrators" (KSS 8.3 END V1), chapters "Motion programming" (status and
 //! turn, "Singularities") and "Programming for user group Expert (KRL syntax)": `PTP`, `LIN`, `C_DIS`, `SPTP` in a `PTP_SPLINE` with `TIME_BLOCK`, `WAIT SEC`, `$ANOUT[n]`
 //! (-1 to 1 for -10 to 10 V), and from "KRL Reference Guide, Release 4.1" (<http://robot.zaab.org/wp-content/uploads/2014/04/KRL-Reference-Guide-v4_1.pdf>): data types AXIS, FRAME, POS, variables `$TOOL`, `$BASE`, `$VEL.CP` [m/s], `$APO.CDIS`
 //! [mm]. X, Y, Z are in millimetres; A, B, C in degrees turn about z, the new y, the new x. Lines keep the posture of their start, S and T count for `PTP` alone.

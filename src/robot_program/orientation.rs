@@ -3,20 +3,6 @@
 use glam::{DMat3, DQuat, DVec3};
 use glamx::DPose3;
 
-/// Axis times angle of a rotation, the shorter way round [rad].
-pub(super) fn rotation_vector(rotation: DQuat) -> DVec3 {
-    let rotation = if rotation.w < 0.0 {
-        -rotation
-    } else {
-        rotation
-    };
-    let sine = rotation.xyz().length();
-    if sine < 1e-300 {
-        return 2.0 * rotation.xyz();
-    }
-    rotation.xyz() * (2.0 * sine.atan2(rotation.w) / sine)
-}
-
 /// Yaw, pitch and roll of a rotation [rad]: turns about z, then the new y, then the new x. In a singular posture yaw is what it happens to be, and roll makes up for it.
 pub(super) fn yaw_pitch_roll(rotation: DQuat) -> [f64; 3] {
     let matrix = DMat3::from_quat(rotation);

@@ -1,11 +1,12 @@
 //! A cell's plan as moves.
 
-use glam::{DQuat, DVec3};
+use glam::DVec3;
 use glamx::DPose3;
 
 use super::dialect::Dialect;
 use super::error::ProgramError;
 use super::moves::{Configuration, Frame, Move, Program, Step, Target, Timing, Way, Zone};
+use super::orientation::of_yaw_pitch_roll;
 use super::output::Output;
 use super::posture::{Posture, axes, configuration};
 use crate::arm::chain::{JointKind, MAX_JOINTS};
@@ -252,12 +253,9 @@ fn base(cell: &Cell) -> Result<DPose3, ProgramError> {
     let (arm, table) = (&scenario.arm, &scenario.program);
     if table.base_position.is_some() || table.base_rotation.is_some() {
         let turn = table.base_rotation.unwrap_or_default();
-        let turn = DQuat::from_rotation_z(turn.z)
-            * DQuat::from_rotation_y(turn.y)
-            * DQuat::from_rotation_x(turn.x);
         return Ok(DPose3::from_parts(
             table.base_position.unwrap_or_default(),
-            turn,
+            of_yaw_pitch_roll([turn.z, turn.y, turn.x]),
         ));
     }
     let found = fixed_frame(&arm.urdf, arm.base_link.as_deref(), "base").map_err(of_arm)?;

@@ -1,6 +1,6 @@
 //! RAPID, the language of ABB.
 //!
-//! Written from "Technical reference manual, RAPID Instructions, Functions and Data types", ABB 3HAC050917 (<https://library.abb.com>): instructions MoveAbsJ, MoveJ, MoveL, SetAO, WaitTime;
+//! After "Technical reference manual, RAPID Instructions, Functions and Data types", ABB 3HAC050917 (<https://library.abb.com>): instructions MoveAbsJ, MoveJ, MoveL, SetAO, WaitTime;
 //! data types confdata, jointtarget, loaddata, orient (q1 to q4, the scalar first), pose, robtarget, speeddata [mm/s, degrees/s], tooldata, wobjdata, zonedata [mm, degrees].
 //! Positions are in millimetres, angles in degrees. `\T` gives a move its time [s].
 

@@ -1,6 +1,6 @@
 //! URScript, the language of Universal Robots.
 //!
-//! Written from "The URScript Programming Language", Universal Robots, for e-Series, software 5.11
+//! After "The URScript Programming Language", Universal Robots, for e-Series, software 5.11
 //! (<https://www.universal-robots.com/download/manuals-e-seriesur-series/script/script-manual-e-series-sw-511/>):
 //! section "Module motion" (`movej`, `movel`, `movep`: q, a, v, t, r; `set_tcp`), "Module internals" (`set_target_payload`, `sleep`), "Module urmath" (`pose_trans`),
 //! "Module interfaces" (`set_standard_analog_out`: 0 to 1; `set_analog_outputdomain`: 1 is volts). A pose is p[x, y, z, rx, ry, rz] in metres and the rotation vector in
@@ -14,8 +14,9 @@ use glamx::DPose3;
 
 use super::error::ProgramError;
 use super::moves::{Frame, Move, Program, Step, Target, Timing, Way, Zone};
-use super::orientation::{fixed, list, rotation_vector};
+use super::orientation::{fixed, list};
 use super::words::{Line, Token};
+use crate::path::rotation_vector;
 
 /// Digits behind the point of metres and radians.
 const DIGITS: usize = 8;

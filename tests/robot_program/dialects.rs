@@ -407,7 +407,7 @@ struct Published {
 }
 
 const PUBLISHED: [Published; 8] = [
-    // As in <https://github.com/UniversalRobots/Universal_Robots_ROS2_Driver>, ur_robot_driver/doc, "script_command".
+    // As in <https://github.com/UniversalRobots/Universal_Robots_ROS2_Driver>, ur_robot_driver/doc/usage/script_code.rst.
     Published {
         dialect: Dialect::Urscript,
         text: "def my_prog():\n  set_digital_out(1, True)\n  movej(p[-0.25, -0.35, 0.75, 0.8, 1.1, 3.0], a=1.2, v=0.25, r=0)\n  movel(p[-0.25, 0.2, 0.4, 0, 0, 3.14], a=0.5, v=0.1, r=0.01)\n  textmsg(\"done\")\nend\n",
@@ -445,7 +445,7 @@ const PUBLISHED: [Published; 8] = [
             ("\ndraw()", "\ndrew()"),
         ],
     },
-    // As in <https://github.com/RoboDK/RoboDK-API>, the macro that loads a KUKA SRC file, "Example program".
+    // As in <https://github.com/RoboDK/RoboDK-API>, the macro that loads a program of KUKA, "Example program" in its comment.
     Published {
         dialect: Dialect::Krl,
         text: "DEF Milling ( )\n\n$BASE = {FRAME: X 10.000,Y -900.000,Z 0.000,A 0.000,B 0.000,C 0.000}\n$TOOL = {FRAME: X 400.5,Y -4.5,Z 100.25,A -0.000,B 90.000,C 0.000}\n\n$VEL.CP = 1.00000\n\nPTP {A1 100.5,A2 -45.25,A3 140.5,A4 107.5,A5 -87.5,A6 6.25}\nLIN {X -0.000,Y -0.000,Z 6.350,A -180.000,B 0.000,C -180.000}\n\n$VEL.CP = 0.02117\nLIN {X 250.000,Y 0.000,Z 6.350,A 180.000,B 0.000,C -180.000}\nLIN {X 250.000,Y 300.000,Z 6.350,A -160.000,B 0.000,C 180.000}\nEND\n",
@@ -543,7 +543,7 @@ const PUBLISHED: [Published; 8] = [
             ("P[2:\"test 123\"]{", "P[1:\"test 123\"]{"),
         ],
     },
-    // As in <https://github.com/GilbertPan97/HandEyeSync>, data/LeiChi-04.25/camera000/calib_c0.ls, with joint angles as in the manual, 4.3.2.
+    // As in <https://github.com/GilbertPan97/HandEyeSync>, data/Projects/LeiChi-04.25/camera0/calib_c0.ls, with joint angles in one position.
     Published {
         dialect: Dialect::FanucLs,
         text: "/PROG  CALIB_C0\n/ATTR\nOWNER\t\t= MNEDITOR;\n/MN\n   1:   ;\n   2:  UTOOL_NUM=4 ;\n   3:  UFRAME_NUM=0 ;\n   4:  OVERRIDE=30% ;\n   5:   ;\n   6:  !TRANSLATION ;\n   7:J P[1] 20% CNT50 ACC50    ;\n   8:L P[2:REF] 100mm/sec CNT100    ;\n   9:  WAIT    .50(sec) ;\n  10:  AO[1:COMPENSATION]=350 ;\n  11:  CALL VACUUM_OFF    ;\n  12:L P[2:REF] 25.5cm/min FINE    ;\n/POS\nP[1]{\n   GP1:\n\tUF : 0, UT : 4,\n\tJ1=     5.500 deg,\tJ2=    12.250 deg,\tJ3=   -45.000 deg,\n\tJ4=     0.000 deg,\tJ5=     -.500 deg,\tJ6=   200.000 deg\n};\nP[2:\"REF\"]{\n   GP1:\n\tUF : 0, UT : 4,\t\tCONFIG : 'N U T, 0, 0, 0',\n\tX =  -333.800  mm,\tY =  1579.200  mm,\tZ =   356.600  mm,\n\tW =  -175.389 deg,\tP =   -39.284 deg,\tR =     -.384 deg\n};\n/END\n",
