@@ -258,7 +258,7 @@ mod tests {
         }
     }
 
-    /// New derivatives at each iteration of each stage would take 2 of a number more for as many iterations; where it ends its derivatives are new.
+    /// It takes 17 evaluations, and 23 with new derivatives for each step; where it ends its derivatives are new.
     #[test]
     fn a_fit_goes_on_by_earlier_derivatives_to_the_same_end() {
         let evidence = fills(0);
@@ -266,7 +266,7 @@ mod tests {
         let start = (&[1.0, 0.5], None);
         let whole = fit(&evidence, start, (&free, &[]), FULL, Limit::of(40));
         let effort = evidence.effort.report().model_evaluations;
-        assert!(effort <= 33, "{effort} model evaluations");
+        assert!(effort <= 20, "{effort} model evaluations");
         let again = fit(
             &evidence,
             (&whole.prediction.plant, None),
