@@ -147,9 +147,7 @@ impl<'a, S: Subject> Walk<'a, S> {
         }
         let shares = self.evidence.shares(stage.forgiven, stage.guided);
         while *left > 0 {
-            if self.goes_on(stage, &shares) == Chord::Ends {
-                return;
-            }
+            self.go_on(stage, &shares);
             *left -= 1;
             self.derive();
             let iteration = Iteration::of(self, &shares, stage);
@@ -162,22 +160,17 @@ impl<'a, S: Subject> Walk<'a, S> {
         }
     }
 
-    /// Goes on by derivatives of earlier places while steps keep their promise. They may end a stage that only leads to the next one; the last stage ends by new ones.
-    fn goes_on(&mut self, stage: &Stage, shares: &[f64]) -> Chord {
+    /// Goes on by derivatives of an earlier place while steps keep their promise. They end no stage: what they promise no more, new ones may.
+    fn go_on(&mut self, stage: &Stage, shares: &[f64]) {
         if self.derived != Some(stage.guided) || !self.moved {
-            return Chord::Fails;
+            return;
         }
         for _ in 0..MOST_CHORDS {
             let iteration = Iteration::of(self, shares, stage);
-            let chord = self.chord(&iteration);
-            self.information = iteration.normal;
-            match chord {
-                Chord::Gains => (),
-                Chord::Ends if stage.gain > 0.0 => return Chord::Ends,
-                Chord::Ends | Chord::Fails => return Chord::Fails,
+            if !self.chord(&iteration) {
+                return;
             }
         }
-        Chord::Gains
     }
 
     /// Finds the derivatives anew, unless they are those of this place.
@@ -218,18 +211,12 @@ impl<'a, S: Subject> Walk<'a, S> {
         0.0
     }
 
-    /// One step by derivatives of an earlier place, taken if it keeps its promise; none where it promises no more than ends the stage.
-    fn chord(&mut self, iteration: &Iteration<'_>) -> Chord {
-        match self.step(iteration) {
-            Some((_, promised)) if promised < iteration.enough => Chord::Ends,
-            Some((tried, promised)) => {
-                match self.try_step(iteration, tried, KEPT_PROMISE * promised) > 0.0 {
-                    true => Chord::Gains,
-                    false => Chord::Fails,
-                }
-            }
-            None => Chord::Fails,
-        }
+    /// One step by derivatives of an earlier place, taken if it keeps its promise; says whether it was.
+    fn chord(&mut self, iteration: &Iteration<'_>) -> bool {
+        self.step(iteration).is_some_and(|(tried, promised)| {
+            promised >= iteration.enough
+                && self.try_step(iteration, tried, KEPT_PROMISE * promised) > 0.0
+        })
     }
 
     fn step(&self, iteration: &Iteration<'_>) -> Option<(Vec<f64>, f64)> {
@@ -255,17 +242,6 @@ impl<'a, S: Subject> Walk<'a, S> {
         }
         0.0
     }
-}
-
-/// What a step by earlier derivatives came to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Chord {
-    /// It gains about what it promised.
-    Gains,
-    /// It promises no more than ends a stage.
-    Ends,
-    /// It gains less than it promised.
-    Fails,
 }
 
 /// The least squares about where a fit is.
