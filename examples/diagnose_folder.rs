@@ -3,7 +3,7 @@
 //! ```text
 //! fitted in full: 1 explanations
 //! transport_delay
-//!   delay_s = 4.414e-2 (4.189e-2 to 4.650e-2)
+//!   delay_s = 4.419e-2 (4.194e-2 to 4.655e-2)
 //! ```
 
 use std::error::Error;
