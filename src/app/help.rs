@@ -113,7 +113,8 @@ Examples:
   idc import assets/first/map.toml assets/first/ride.csv
   # A recording of each log, into a folder.
   idc import assets/first/map.toml assets/first/*.csv --out runs/imported/
-  # What idc run --mcap wrote needs no map.
+  # What idc run --mcap writes needs no map.
+  idc run scenarios/plate_edge.toml --out runs/messages --mcap
   idc import runs/messages/recording.mcap --out runs/messages/back.parquet";
 
 /// `idc diagnose`.
