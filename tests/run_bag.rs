@@ -374,8 +374,11 @@ fn another_reader_finds_every_channel_with_its_unit_to_the_bit() {
                 "{topic}.{field}"
             );
         }
-        let phases = &topics["/phases"]["messages"];
-        for (phase, found) in samples.phases().iter().zip(phases.as_array().unwrap()) {
+        // A bench has none.
+        let phases = topics["/phases"]["messages"].as_array().cloned();
+        let phases = phases.unwrap_or_default();
+        assert_eq!(phases.len(), samples.phases().len());
+        for (phase, found) in samples.phases().iter().zip(&phases) {
             assert_eq!(found["name"], phase.name.as_str());
             // The reader of JSON here is off by a last digit.
             let start = found["start_s"].as_f64().unwrap();
