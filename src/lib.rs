@@ -30,6 +30,7 @@
 //! - [`simulation`]: the coupled step
 //! - [`rig`]: the bench rig, the device without an arm
 //! - [`recording`]: sampled signals, CSV, Parquet
+//! - `ros_bag`: messages of ROS 2 in an MCAP
 //! - [`scene`]: a recording in space
 //! - `viewer`: both for Rerun's viewer
 //! - [`metrics`]: the numbers of a run
@@ -107,6 +108,8 @@ pub mod report;
 pub mod rig;
 #[cfg(feature = "cli")]
 pub mod robot_program;
+#[cfg(feature = "import")]
+pub mod ros_bag;
 pub mod run;
 pub mod scenario;
 pub mod scene;

@@ -65,6 +65,7 @@ mod removal_table;
 mod report;
 mod rig_file;
 mod robot_program;
+mod run_bag;
 mod run_in_one_call;
 mod scenario_comments;
 mod schemas;

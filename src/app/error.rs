@@ -117,6 +117,14 @@ pub enum AppError {
         /// The map.
         map: std::path::PathBuf,
     },
+    /// Logs after a recording that needs no map.
+    #[error("{} is a recording and no import map, and says itself what it holds: expected no logs after it, {more} were given; one command for each recording, or an import map in its place", file.display())]
+    OwnRecording {
+        /// The recording.
+        file: std::path::PathBuf,
+        /// Number of the logs.
+        more: usize,
+    },
     /// Two recordings of one name.
     #[error("{} and {} would both be written to {}; expected logs of different names, or one command for each", one.display(), other.display(), out.display())]
     SameOutput {

@@ -1,4 +1,4 @@
-//! The files of a run: recording.rrd, samples.parquet, summary.json, report.html, cell.svg, edge.svg, lean.svg, drawing.json, figures.svg of a bench, varied.toml of
+//! The files of a run: recording.rrd, recording.mcap where it is asked for, samples.parquet, summary.json, report.html, cell.svg, edge.svg, lean.svg, drawing.json, figures.svg of a bench, varied.toml of
 //! `--set`; those of a study: design.json, override.toml, front.svg, robustness.svg, report.html. All appear, or none.
 
 use std::collections::BTreeMap;
@@ -9,6 +9,7 @@ use super::space;
 use crate::drawing;
 use crate::metrics::FOLLOW_PHASE;
 use crate::recording::atomic::{UnfinishedFolder, make_folder, write_text};
+use crate::recording::bag::write_bag;
 use crate::recording::claim::{Claim, clear_beside, clear_unfinished};
 use crate::recording::parquet::write_parquet;
 use crate::recording::provenance::Provenance;
@@ -18,6 +19,8 @@ use crate::scene::Scene;
 use crate::tasks::TASKS;
 
 pub(super) const RECORDING: &str = "recording.rrd";
+/// The signals as messages of ROS 2.
+pub(super) const BAG: &str = "recording.mcap";
 pub(super) const SAMPLES: &str = "samples.parquet";
 pub(super) const FIGURES: &str = "figures.svg";
 pub(super) const CELL: &str = "cell.svg";
@@ -33,8 +36,9 @@ pub(super) const VARIED: &str = "varied.toml";
 /// What the seal of summary.json says that it is of.
 pub(super) const RUN: &str = "run";
 /// All that a run may write.
-pub(super) const RUN_NAMES: [&str; 11] = [
+pub(super) const RUN_NAMES: [&str; 12] = [
     RECORDING,
+    BAG,
     SAMPLES,
     SUMMARY,
     FIGURES,
@@ -248,16 +252,20 @@ impl OutputFolder {
                 format!("idc {}", env!("CARGO_PKG_VERSION")),
             ),
         ]);
-        let (table, picture) = [SAMPLES, RECORDING]
-            .map(|name| unfinished.path().join(name))
-            .into();
-        // The two large files, side by side.
-        let written = rayon::join(
-            || write_parquet(&table, output.recording, &metadata),
+        let [table, picture, bag] =
+            [SAMPLES, RECORDING, BAG].map(|name| unfinished.path().join(name));
+        let joints = output.joints.as_deref();
+        // The large files, side by side.
+        let (tables, written) = rayon::join(
+            || {
+                write_parquet(&table, output.recording, &metadata)?;
+                let write = |joints| write_bag(&bag, output.recording, joints, &metadata);
+                joints.map_or(Ok(()), write)
+            },
             || output.picture.map(|write| write(&picture)),
         );
-        written.0?;
-        let recorded = written.1.transpose()?.is_some();
+        tables?;
+        let recorded = written.transpose()?.is_some();
         write_text(&unfinished.path().join(SUMMARY), output.summary)?;
         write_text(&unfinished.path().join(REPORT), output.report)?;
         let mut names = vec![SAMPLES, SUMMARY, REPORT];
@@ -277,6 +285,9 @@ impl OutputFolder {
         }
         if recorded {
             names.insert(0, RECORDING);
+        }
+        if joints.is_some() {
+            names.push(BAG);
         }
         let texts = [
             (EDGE_PROFILE, output.edge_profile),
@@ -352,6 +363,8 @@ pub(super) struct RunOutput<'a> {
     pub recording: &'a Recording,
     /// Writer of recording.rrd; none where it is not wanted.
     pub picture: Option<Picture<'a>>,
+    /// Names of the arm's joints, base first, where recording.mcap is wanted.
+    pub joints: Option<Vec<String>>,
     /// summary.json.
     pub summary: &'a str,
     /// edge_profile.csv.

@@ -54,6 +54,8 @@ Examples:
   idc run scenarios/plate_edge.toml --out runs/first --force
   # Numbers, samples and page alone, as for a run in a test.
   idc run scenarios/plate_edge.toml --out runs/guard --no-recording
+  # With recording.mcap for Foxglove and ros2 bag.
+  idc run scenarios/plate_edge.toml --out runs/messages --mcap
   # Watched in a viewer while it goes on. (opens a window)
   idc run scenarios/plate_edge.toml --out runs/watched --view
   # Three feeds side by side: a folder each, and compare.html.
@@ -110,7 +112,10 @@ Examples:
   # What is in a log of a data logger; nothing is written.
   idc import assets/first/map.toml assets/first/ride.csv
   # A recording of each log, into a folder.
-  idc import assets/first/map.toml assets/first/*.csv --out runs/imported/";
+  idc import assets/first/map.toml assets/first/*.csv --out runs/imported/
+  # What idc run --mcap writes needs no map.
+  idc run scenarios/plate_edge.toml --out runs/messages --mcap
+  idc import runs/messages/recording.mcap --out runs/messages/back.parquet";
 
 /// `idc diagnose`.
 pub(super) const DIAGNOSE: &str = "\

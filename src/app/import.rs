@@ -17,7 +17,7 @@ use super::progress;
 use super::terminal::shown_path;
 use crate::document::{self, Style};
 use crate::import::findings::same_data;
-use crate::import::{ImportError, ImportMap, Imported, LogNote, import, load_map};
+use crate::import::{ImportError, ImportMap, Imported, LogNote, import, load_map, map_of_bag};
 use crate::recording::csv::write_recording;
 use crate::recording::gaps::parts;
 use crate::recording::parquet::write_parquet;
@@ -25,7 +25,7 @@ use summary::{Copies, Job, name};
 
 #[derive(Debug, Args)]
 pub(super) struct ImportArguments {
-    /// Import map.
+    /// Import map; or a recording.mcap of `idc run --mcap`, which needs none.
     map: PathBuf,
     /// Logs in place of those that the map names, in its order; several times as many make several recordings.
     #[arg(value_name = "LOG")]
@@ -49,7 +49,16 @@ pub(super) struct ImportArguments {
 
 /// Imports logs, one recording for as many as the map has files; nothing is written before all of them have been read.
 pub(super) fn run(arguments: &ImportArguments) -> Result<ExitCode, AppError> {
-    let map = load_map(&arguments.map)?;
+    let map = match map_of_bag(&arguments.map)? {
+        Some(_) if !arguments.logs.is_empty() => {
+            return Err(AppError::OwnRecording {
+                file: arguments.map.clone(),
+                more: arguments.logs.len(),
+            });
+        }
+        Some(own) => own,
+        None => load_map(&arguments.map)?,
+    };
     if let Some(out) = &arguments.out {
         check_ending(out)?;
     }
@@ -92,11 +101,15 @@ pub(super) fn run(arguments: &ImportArguments) -> Result<ExitCode, AppError> {
     });
     for job in &jobs {
         for (path, samples) in &job.outs {
-            let part = job.imported.recording.part(samples.clone())?;
+            let recording = &job.imported.recording;
+            let is_whole = *samples == (0..recording.sample_count());
+            let part = (!is_whole).then(|| recording.part(samples.clone()));
+            let part = part.transpose()?;
+            let part = part.as_ref().unwrap_or(recording);
             if is_csv(path) {
-                write_recording(path, &part)?;
+                write_recording(path, part)?;
             } else {
-                write_parquet(path, &part, &provenance(&job.imported, &map))?;
+                write_parquet(path, part, &provenance(&job.imported, &map))?;
             }
         }
         interruptible.iter().for_each(Interruptible::one_more);

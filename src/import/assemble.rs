@@ -107,7 +107,7 @@ pub fn import(map: &ImportMap, files: &[PathBuf]) -> Result<Imported, ImportErro
         ));
     }
     Ok(Imported {
-        recording: Recording::new(time, channels, Vec::new())?,
+        recording: Recording::new(time, channels, map.phases.clone())?,
         origin,
         logs,
     })

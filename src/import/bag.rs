@@ -2,7 +2,7 @@
 //! a joint by its name.
 //!
 //! The messages' definitions stand in the file (encoding `ros2msg`), so any is read; of a SQLite bag from before ROS 2 Iron they do not, and the usual ones
-//! are known (`standard`). Each topic has times of its own.
+//! are known (`crate::ros_bag`). Each topic has times of its own.
 
 use std::path::Path;
 
@@ -18,8 +18,8 @@ pub(super) mod glance;
 mod listed;
 mod mcap_file;
 mod message;
+pub(super) mod own;
 mod sqlite_file;
-mod standard;
 mod store;
 mod topic;
 

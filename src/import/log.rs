@@ -136,12 +136,12 @@ fn seconds(map: &FileMap, times: Times) -> (Vec<f64>, f64) {
                 let epoch = first.div_euclid(NANOSECONDS);
                 let since = |stamp: &i64| match stamp {
                     0 => f64::NAN,
-                    stamp => (stamp - epoch * NANOSECONDS) as f64 * 1e-9,
+                    stamp => (stamp - epoch * NANOSECONDS) as f64 / 1e9,
                 };
                 (stamps.iter().map(since).collect(), epoch as f64)
             }
             _ => {
-                let since = |stamp: &i64| *stamp as f64 * 1e-9;
+                let since = |stamp: &i64| *stamp as f64 / 1e9;
                 (stamps.iter().map(since).collect(), 0.0)
             }
         },

@@ -7,9 +7,9 @@
 use std::path::PathBuf;
 
 use super::stamps::{self, DateOrder, TwoNumbers};
-use super::units::LogUnit;
+use super::units::{LogUnit, raised};
 use crate::file::Limit;
-use crate::recording::Unit;
+use crate::recording::{PhaseSpan, Unit};
 
 /// Ending of a quantity whose pressure is above the atmosphere.
 pub const GAUGE: &str = "_gauge";
@@ -25,6 +25,8 @@ pub struct ImportMap {
     pub files: Vec<FileMap>,
     /// Constant quantities that no log holds.
     pub constants: Vec<Constant>,
+    /// Phases of the job, where they are known.
+    pub phases: Vec<PhaseSpan>,
 }
 
 /// A quantity that no log holds, with the value that it has throughout.
@@ -55,6 +57,8 @@ pub struct FileMap {
     pub limit: Limit,
     /// Whether fewer than nine in ten of its rows may be used.
     pub accepts_unused_rows: bool,
+    /// Whether a channel may have no value at all.
+    pub accepts_empty: bool,
     /// Marks that stand for no value.
     pub missing: Missing,
     /// Which of its rows are meant, where it holds those of several variables.
@@ -256,8 +260,8 @@ impl ChannelMap {
     /// A number of the log in SI.
     #[must_use]
     pub fn to_si(&self, number: f64) -> f64 {
-        let value = self.unit.to_si(self.gain * number + self.offset);
-        self.above + if self.reversed { -value } else { value }
+        let value = self.unit.to_si(raised(self.gain * number, self.offset));
+        raised(if self.reversed { -value } else { value }, self.above)
     }
 
     /// The number of the log of a value in SI.

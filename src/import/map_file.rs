@@ -47,6 +47,7 @@ pub fn load_map(path: &Path) -> Result<ImportMap, ScenarioError> {
         title: top.text("title", &keys.title)?,
         files,
         constants,
+        phases: Vec::new(),
     };
     check_together(&document, &map)?;
     Ok(map)
@@ -89,6 +90,7 @@ fn file_map(
         accepts_truncated: keys.accept_truncated.unwrap_or(false),
         limit: Limit::of(keys.largest_megabytes.map(|megabytes| megabytes as u64)),
         accepts_unused_rows: keys.accept_unused_rows,
+        accepts_empty: false,
         missing: missing(&section, keys)?,
         rows: keys.rows.as_ref().map(|rows| RowChoice {
             column: rows.column.0.clone(),

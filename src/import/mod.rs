@@ -27,6 +27,7 @@ pub mod units;
 pub mod words;
 
 pub use assemble::{Imported, LogNote, import};
+pub use bag::own::map_of_bag;
 pub use error::ImportError;
 pub use log::{Log, Series, read_log};
 pub use look::{Draft, draft};

@@ -58,7 +58,8 @@ pub(super) const READ: &str =
     "a text, a spreadsheet, Parquet, MAT of version 5 to 7, TDMS or a bag of ROS 2";
 
 const EXPORT: &str = "the program that recorded it exports CSV, Parquet or MAT of version 5 to 7";
-const ASAMMDF: &str = "export it as CSV, Parquet or MAT of version 5 to 7: the program that recorded it does, or the open `asammdf`";
+const ASAMMDF: &str = "export it as CSV, Parquet or MAT of version 5 to 7: the program that recorded it does, or Python with `asammdf`, \
+    which writes a CSV a channel group: python -c \"from asammdf import MDF; MDF('LOG.mf4').export('csv', 'LOG', single_time_base=False, time_from_zero=False, add_units=True)\"";
 const H5: &str = "save it as MAT of version 5 to 7 (in MATLAB save(file, '-v7')), or its columns as CSV or Parquet (Python: `h5py` with `pandas`)";
 const PANDAS: &str = "save it as CSV or Parquet (Python: `pandas`)";
 const UNPACK: &str = "unpack it and import the file in it";

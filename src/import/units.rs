@@ -26,8 +26,14 @@ impl LogUnit {
     /// A value in SI.
     #[must_use]
     pub fn to_si(&self, value: f64) -> f64 {
-        self.factor * (value + self.zero)
+        self.factor * raised(value, self.zero)
     }
+}
+
+/// A value with an offset; without one it stays what it is, the sign of a zero too.
+#[must_use]
+pub fn raised(value: f64, offset: f64) -> f64 {
+    if offset == 0.0 { value } else { value + offset }
 }
 
 /// All of them, those of a kind together, the SI unit first.

@@ -2,9 +2,11 @@
 //!
 //! A [`Recording`] is sample times, named channels in SI units and the phases of the job. It knows
 //! nothing of how it came about. [`parquet`] stores it as a table, [`csv`] reads that of a real rig, [`table`] any other's columns, and [`schema`] lists
-//! the signals that the simulated cell writes.
+//! the signals that the simulated cell writes. `bag` writes it as messages of ROS 2.
 
 pub mod atomic;
+#[cfg(feature = "import")]
+pub mod bag;
 pub mod claim;
 pub mod csv;
 mod error;

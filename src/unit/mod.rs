@@ -128,6 +128,7 @@ pub const UNITS: &[Unit] = &[
     both("rad/s", "rad_per_s", "rad/s", Divide(1.0)), both("deg/s", "deg_per_s", "rad/s", Multiply(PI / 180.0)),
     logs("rpm", "rad/s", PI / 30.0),
     Unit { suffix: "1", ..logs("1", "1", 1.0) }, logs("%", "1", 1e-2),
+    both("W", "w", "W", Divide(1.0)), Unit { suffix: "j", ..logs("J", "J", 1.0) }, Unit { suffix: "m3_per_s", ..logs("m3/s", "m3/s", 1.0) },
     // Of keys of files alone.
     keys("mm3/s", "mm3_per_s", "m3/s", Divide(1e9)), keys("mm3/J", "mm3_per_j", "m3/J", Divide(1e9)), keys("J/mm3", "j_per_mm3", "J/m3", Multiply(1e9)),
     keys("mm3", "mm3", "m3", Divide(1e9)), keys("1/min", "rpm", "rad/s", Multiply(PI / 30.0)), keys("kJ", "kj", "J", Multiply(1e3)),
@@ -139,10 +140,8 @@ pub const UNITS: &[Unit] = &[
     keys("J/(kg K)", "j_per_kg_k", "J/(kg K)", Divide(1.0)), keys("bar gauge", "bar_gauge", "Pa", Multiply(1e5)),
     keys("Pa absolute", "pa_absolute", "Pa", Divide(1.0)), keys("cm3", "cm3", "m3", Divide(1e6)), keys("mm2", "mm2", "m2", Divide(1e6)),
     keys("m3", "m3", "m3", Divide(1.0)), keys("m2", "m2", "m2", Divide(1.0)), keys("W/K", "w_per_k", "W/K", Divide(1.0)),
-    keys("ohm", "ohm", "ohm", Divide(1.0)), keys("uF", "uf", "F", Divide(1e6)), keys("Hz", "hz", "Hz", Divide(1.0)), keys("W", "w", "W", Divide(1.0)),
+    keys("ohm", "ohm", "ohm", Divide(1.0)), keys("uF", "uf", "F", Divide(1e6)), keys("Hz", "hz", "Hz", Divide(1.0)),
     keys("", "", "", Divide(1.0)),
-    // Of columns alone.
-    Unit { of_keys: false, ..keys("m3/s", "m3_per_s", "m3/s", Divide(1.0)) }, Unit { of_keys: false, ..keys("J", "j", "J", Divide(1.0)) },
 ];
 
 #[cfg(test)]
@@ -166,7 +165,7 @@ mod tests {
         // 60 normal litres a minute are one a second, 22.414 of which are a mole of air of 28.96 g.
         ("kg/s", 1.0, 1.0), ("g/s", 3.0, 3e-3), ("Nl/min", 60.0, 28.96e-3 / 22.414),
         ("K", 300.0, 300.0), ("degC", 20.0, 293.15), ("degF", 68.0, 293.15), ("V", 5.0, 5.0), ("mV", 300.0, 0.3), ("A", 2.0, 2.0), ("mA", 20.0, 0.02),
-        ("rad", 1.0, 1.0), ("mrad", 5.0, 5e-3), ("deg", 180.0, PI), ("rad/s", 1.0, 1.0), ("deg/s", 360.0, 2.0 * PI), ("rpm", 3000.0, 100.0 * PI), ("1", 0.5, 0.5), ("%", 12.0, 0.12),
+        ("rad", 1.0, 1.0), ("mrad", 5.0, 5e-3), ("deg", 180.0, PI), ("rad/s", 1.0, 1.0), ("deg/s", 360.0, 2.0 * PI), ("rpm", 3000.0, 100.0 * PI), ("1", 0.5, 0.5), ("%", 12.0, 0.12), ("W", 750.0, 750.0), ("m3/s", 2.0, 2.0), ("J", 40.0, 40.0),
     ];
 
     #[test]

@@ -7,7 +7,7 @@ use idc_cell::arm::urdf::{
 };
 use idc_cell::diagnosis::answer::Answer;
 use idc_cell::document::{html, markdown};
-use idc_cell::import::{ImportError, draft, import, load_map};
+use idc_cell::import::{ImportError, draft, import, load_map, map_of_bag};
 use idc_cell::plant::{Expression, SYMBOLS, Unit};
 use idc_cell::recording::csv::{EdgeProfile, read_cell_csv, read_csv, read_log_csv, read_readings};
 use idc_cell::recording::long_table::read_long;
@@ -50,7 +50,7 @@ const fn at(name: &'static str, ending: &'static str, read: fn(&Path, &Room) -> 
 
 /// All of them.
 #[rustfmt::skip] // A table: one door a line.
-pub const DOORS: [Door; 25] = [
+pub const DOORS: [Door; 26] = [
     at("scenario", "toml", |file, _| of_keys(load_any(file))),
     at("device", "toml", |file, _| of_keys(load_device(file))),
     at("rig", "toml", |file, _| of_keys(load_rig(file))),
@@ -68,6 +68,7 @@ pub const DOORS: [Door; 25] = [
     at("csv", "csv", csv),
     at("text_log", "csv", log),
     at("mcap", "mcap", log),
+    at("run_bag", "mcap", run_bag),
     at("sqlite", "db3", log),
     at("mat", "mat", log),
     at("parquet_log", "parquet", log),
@@ -306,6 +307,15 @@ fn log(file: &Path, room: &Room) -> Reached {
         Err(error) => of_log::<()>(Err(error)),
     };
     given.map_or(drafted, |given| given.max(drafted))
+}
+
+/// A bag that says itself what it holds.
+fn run_bag(file: &Path, _: &Room) -> Reached {
+    match map_of_bag(file) {
+        Ok(Some(map)) => of_log(import(&map, &[])).max(Reached::Content),
+        Ok(None) => Reached::Header,
+        Err(error) => of_log::<()>(Err(error)),
+    }
 }
 
 fn parquet(file: &Path, _: &Room) -> Reached {

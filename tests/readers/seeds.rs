@@ -1,5 +1,6 @@
 //! Small valid files of each kind, from the project's own and made here: what fuzzing starts from.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use arrow::array::{ArrayRef, Float64Array, Int64Array, RecordBatch, StringArray};
@@ -60,8 +61,11 @@ pub fn seeds(door: &str) -> Vec<Vec<u8>> {
         "text_log" => text_logs(),
         "mcap" => [None, Some(mcap::Compression::Zstd)]
             .into_iter()
-            .flat_map(|packed| [true, false].map(|in_chunks| mcap_bag(packed, in_chunks)))
+            .flat_map(|packed| [true, false].map(|in_chunks| mcap_bag(packed, in_chunks, false)))
             .collect(),
+        "run_bag" => [true, false]
+            .map(|in_chunks| mcap_bag(None, in_chunks, true))
+            .into(),
         "sqlite" => [false, true].map(sqlite_bag).into(),
         "mat" => mat(),
         "parquet_log" | "parquet" => parquets(),
@@ -342,7 +346,7 @@ const TOPICS: [[&str; 3]; 2] = [
 ];
 
 /// A bag whose check sums are left out, which MCAP allows: an input is not stopped by them.
-fn mcap_bag(packed: Option<mcap::Compression>, in_chunks: bool) -> Vec<u8> {
+fn mcap_bag(packed: Option<mcap::Compression>, in_chunks: bool, of_run: bool) -> Vec<u8> {
     let options = WriteOptions::new()
         .profile("ros2")
         .compression(packed)
@@ -361,9 +365,27 @@ fn mcap_bag(packed: Option<mcap::Compression>, in_chunks: bool) -> Vec<u8> {
         let schema = writer
             .add_schema(name, "ros2msg", definition.as_bytes())
             .unwrap();
-        let none = std::collections::BTreeMap::default();
-        writer.add_channel(schema, topic, "cdr", &none).unwrap()
+        let metadata = match of_run && topic == "/wrench" {
+            true => says(),
+            false => BTreeMap::default(),
+        };
+        writer.add_channel(schema, topic, "cdr", &metadata).unwrap()
     });
+    if of_run {
+        let schema = writer.add_schema("idc.Phase", "jsonschema", b"{}").unwrap();
+        let metadata = BTreeMap::default();
+        let channel_id = writer
+            .add_channel(schema, "/phases", "json", &metadata)
+            .unwrap();
+        let header = MessageHeader {
+            channel_id,
+            sequence: 0,
+            log_time: 0,
+            publish_time: 0,
+        };
+        let phase = br#"{"name":"follow","start_s":0.5,"end_s":1.5}"#;
+        writer.write_to_known_channel(&header, phase).unwrap();
+    }
     for row in 0..ROWS {
         for (channel_id, data) in channels.into_iter().zip(messages(row)) {
             let time = START * 1_000_000_000 + row as u64 * 10_000_000;
@@ -379,6 +401,16 @@ fn mcap_bag(packed: Option<mcap::Compression>, in_chunks: bool) -> Vec<u8> {
     writer.finish().unwrap();
     drop(writer);
     bytes.into_inner()
+}
+
+/// What `idc run --mcap` says of a topic.
+fn says() -> BTreeMap<String, String> {
+    let columns = r#"[{"column":"contact_force_n","field":"wrench.force.z","place":1},{"column":"wrench_force_x_n","field":"wrench.force.x","place":0}]"#;
+    let pair = |key: &str, value: &str| (key.to_owned(), value.to_owned());
+    BTreeMap::from([
+        pair("idc_layout_version", "1"),
+        pair("idc_columns", columns),
+    ])
 }
 
 /// A bag in SQLite, with definitions as since ROS 2 Iron or without.

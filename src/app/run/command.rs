@@ -53,6 +53,9 @@ pub(in super::super) struct RunArguments {
     /// Leave out recording.rrd, as for many runs of which only the numbers are wanted.
     #[arg(long, help_heading = "Output")]
     pub(super) no_recording: bool,
+    /// Write recording.mcap as well: all signals as messages of ROS 2, for Foxglove and `ros2 bag`; `idc import` reads it back without a map.
+    #[arg(long, help_heading = "Output")]
+    pub(super) mcap: bool,
     /// Let the recording open at a moment of simulated time [s] and stay there, for pictures.
     #[arg(long, hide = true)]
     hold_at_s: Option<f64>,
@@ -67,6 +70,7 @@ impl RunArguments {
     pub(super) fn run_options(&self) -> RunOptions {
         RunOptions {
             recorded: !self.no_recording,
+            with_bag: self.mcap,
             opening: self.hold_at_s.map_or(Opening::Following, Opening::At),
             style: match anstream::AutoStream::choice(&std::io::stdout()) {
                 anstream::ColorChoice::Never => Style::Plain,

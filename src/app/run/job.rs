@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use super::super::edge_course::edge_course;
 use super::super::error::{AppError, ExitCode};
 use super::super::files::{
-    DRAWING, EDGE, EDGE_PROFILE, FIGURES, LEAN, OutputFolder, Picture, RECORDING, RUN, RunOutput,
-    sketches,
+    BAG, DRAWING, EDGE, EDGE_PROFILE, FIGURES, LEAN, OutputFolder, Picture, RECORDING, RUN,
+    RunOutput, sketches,
 };
 use super::super::picture::{across_the_edge, finished_edge, scene_of};
 use super::super::streaming::StreamingRecording;
@@ -33,6 +33,8 @@ use crate::viewer::{Opening, RerunOptions, write_rrd};
 pub(super) struct RunOptions {
     /// Whether recording.rrd is written.
     pub recorded: bool,
+    /// Whether recording.mcap is.
+    pub with_bag: bool,
     /// First view of recording.rrd.
     pub opening: Opening,
     /// Style of the tables.
@@ -59,9 +61,10 @@ pub(super) struct RunOutcome {
 
 impl Job {
     /// Whether a run of it writes the file of this name, of those that a run may write.
-    pub(super) fn writes(&self, name: &str, recorded: bool) -> bool {
+    pub(super) fn writes(&self, name: &str, options: RunOptions) -> bool {
         match name {
-            RECORDING => recorded,
+            RECORDING => options.recorded,
+            BAG => options.with_bag,
             LEAN => matches!(self, Self::Cell(_)),
             FIGURES => matches!(self, Self::Bench(_)),
             // Of a run that followed one.
@@ -173,6 +176,7 @@ fn perform_cell(
             recording: &finished.recording,
             picture: encoded
                 .map(|encoded| -> Picture<'_> { Box::new(move |path| encoded.write(path)) }),
+            joints: run_options.with_bag.then(|| joint_names(cell)),
             summary: &document,
             edge_profile: finished.edge.as_ref().map(EdgeProfile::text).as_deref(),
             figures: None,
@@ -225,6 +229,7 @@ fn perform_bench(
         title: &scenario.title,
         recording: &finished.recording,
         picture: run_options.recorded.then_some(Box::new(picture)),
+        joints: run_options.with_bag.then(Vec::new),
         summary: &document,
         edge_profile: None,
         figures: Some(&bench_figures::figures(scenario, &finished.recording)?),
@@ -241,6 +246,12 @@ fn perform_bench(
         names,
         shown: (scene, options.summary_markdown),
     })
+}
+
+/// Names of the arm's joints, base first.
+fn joint_names(cell: &Cell) -> Vec<String> {
+    let joints = &cell.setup.arm.chain.joints;
+    joints.iter().map(|joint| joint.name.clone()).collect()
 }
 
 /// summary.json.

@@ -15,7 +15,7 @@ use super::super::output::{say, say_styled};
 use super::super::progress;
 use super::super::terminal::{say_aside, shown_path};
 use super::command::RunArguments;
-use super::job::code;
+use super::job::{RunOptions, code};
 use super::settings::{Variant, blamed, with_flags};
 use super::source::Source;
 use super::table::{Done, document};
@@ -120,7 +120,7 @@ fn one(
     let titled: Vec<_> = variant.edits.iter().cloned().chain(title).collect();
     let job = Job::new(template.with(&titled)?)?;
     let existing = match arguments.policy() {
-        OverwritePolicy::Keep => existing(folder.path(), &job, &source, !arguments.no_recording)?,
+        OverwritePolicy::Keep => existing(folder.path(), &job, &source, arguments.run_options())?,
         _ => None,
     };
     let existing = existing.and_then(|existing| match existing {
@@ -152,14 +152,14 @@ fn existing(
     folder: &Path,
     job: &Job,
     source: &Source,
-    recorded: bool,
+    options: RunOptions,
 ) -> Result<Option<Result<RunResult, String>>, AppError> {
     let text = match read_sealed(&folder.join(SUMMARY), RUN) {
         Ok(text) => text,
         Err(SealError::Absent) => return Ok(None),
         Err(why) => return Ok(Some(Err(format!("of {SUMMARY}, {why}")))),
     };
-    let mut needed = RUN_NAMES.iter().filter(|name| job.writes(name, recorded));
+    let mut needed = RUN_NAMES.iter().filter(|name| job.writes(name, options));
     if let Some(name) = needed.find(|name| !folder.join(name).is_file()) {
         return Ok(Some(Err(format!("{name} is missing"))));
     }

@@ -2,7 +2,7 @@
 
 use super::field::Definition;
 use super::message::There;
-use super::standard;
+use crate::ros_bag;
 
 /// Reads the definition of a topic's messages.
 ///
@@ -19,7 +19,7 @@ pub(super) fn definition(owner: &There) -> Result<Definition, String> {
     };
     match (owner.encoding.as_str(), schema.encoding.as_str()) {
         ("cdr", "ros2msg") => parse(&String::from_utf8_lossy(&schema.data)),
-        ("cdr", "") => match standard::definition(name) {
+        ("cdr", "") => match ros_bag::definition(name) {
             Some(text) => parse(&text),
             None => Err(format!(
                 "of messages {name}, whose definition does not stand in the bag and is none of the usual ones; \
@@ -30,5 +30,29 @@ pub(super) fn definition(owner: &There) -> Result<Definition, String> {
             "of messages of encoding `{own}` with a definition of encoding `{}`",
             schema.encoding
         )),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ros_bag::definition;
+    use crate::ros_bag::names;
+
+    #[test]
+    fn every_message_has_all_that_is_in_it() {
+        for name in names() {
+            let text = definition(name).unwrap();
+            let read = Definition::parse(name, &text).unwrap();
+            let of_number = read.numbers().len() + read.times().len();
+            assert!(of_number > 0, "{}", name);
+            for path in read.numbers() {
+                assert!(read.field(&path).is_some(), "{}: {path}", name);
+            }
+        }
+        let name = "geometry_msgs/msg/WrenchStamped";
+        let wrench = Definition::parse(name, &definition(name).unwrap()).unwrap();
+        assert!(wrench.numbers().contains(&"wrench.force.z".to_owned()));
+        assert!(definition("my_msgs/msg/Own").is_none());
     }
 }

@@ -210,6 +210,7 @@ impl Known {
                     topic: channel.topic,
                     encoding: channel.message_encoding,
                     schema: self.schemas.get(&channel.schema_id).cloned(),
+                    metadata: Rc::new(channel.metadata),
                 };
                 self.channels.insert(channel.id, there);
             }

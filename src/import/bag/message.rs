@@ -1,6 +1,7 @@
 //! A message of a bag, wherever it is kept.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::rc::Rc;
 
 use crate::import::packed::{Budget, unpacked_message};
@@ -19,6 +20,8 @@ pub(super) struct There {
     pub topic: String,
     pub encoding: String,
     pub schema: Option<Rc<Schema>>,
+    /// What its writer says of it.
+    pub metadata: Rc<BTreeMap<String, String>>,
 }
 
 /// A message.

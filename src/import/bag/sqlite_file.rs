@@ -221,6 +221,7 @@ fn topics(connection: &Connection) -> Result<BTreeMap<i64, There>, Error> {
             topic: row.get(1)?,
             encoding: row.get(3)?,
             schema: Some(schema),
+            metadata: Rc::default(),
         };
         topics.insert(row.get(0)?, there);
     }

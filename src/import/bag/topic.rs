@@ -374,7 +374,7 @@ impl Topic {
         }
         for (place, channel) in self.channels.iter().enumerate() {
             let empty = self.rows.iter().all(|row| row.4[place].is_nan());
-            if empty {
+            if empty && !map.accepts_empty {
                 return Err(ImportError::Kind {
                     file: path.to_owned(),
                     column: map.channels[*channel].column.clone(),

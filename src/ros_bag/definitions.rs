@@ -1,4 +1,5 @@
-//! The usual messages of ROS 2, for bags that hold no definitions: fields of std_msgs, geometry_msgs and sensor_msgs (common_interfaces, Humble to Jazzy).
+//! The usual messages of ROS 2, for bags that are written and for those that hold no definitions: fields of std_msgs, geometry_msgs, sensor_msgs and
+//! trajectory_msgs (common_interfaces, Humble to Jazzy; <https://docs.ros.org/en/jazzy/p/trajectory_msgs/>).
 
 /// A message: its type, its fields and the messages in them.
 struct Standard {
@@ -20,6 +21,7 @@ const fn standard(
 }
 
 const TIME: &str = "builtin_interfaces/Time";
+const DURATION: &str = "builtin_interfaces/Duration";
 const HEADER: &str = "std_msgs/Header";
 const VECTOR: &str = "geometry_msgs/Vector3";
 const POINT: &str = "geometry_msgs/Point";
@@ -28,7 +30,7 @@ const QUATERNION: &str = "geometry_msgs/Quaternion";
 #[rustfmt::skip] // A table: a message a line.
 const STANDARDS: &[Standard] = &[
     standard(TIME, "int32 sec\nuint32 nanosec\n", &[]),
-    standard("builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n", &[]),
+    standard(DURATION, "int32 sec\nuint32 nanosec\n", &[]),
     standard(HEADER, "builtin_interfaces/Time stamp\nstring frame_id\n", &[TIME]),
     standard("std_msgs/Bool", "bool data\n", &[]),
     standard("std_msgs/Int8", "int8 data\n", &[]),
@@ -59,6 +61,10 @@ const STANDARDS: &[Standard] = &[
     standard("geometry_msgs/Wrench", "Vector3 force\nVector3 torque\n", &[VECTOR]),
     standard("geometry_msgs/WrenchStamped", "std_msgs/Header header\nWrench wrench\n", &[HEADER, TIME, "geometry_msgs/Wrench", VECTOR]),
     standard("sensor_msgs/JointState", "std_msgs/Header header\nstring[] name\nfloat64[] position\nfloat64[] velocity\nfloat64[] effort\n", &[HEADER, TIME]),
+    standard("trajectory_msgs/JointTrajectoryPoint", "float64[] positions\nfloat64[] velocities\nfloat64[] accelerations\nfloat64[] effort\n\
+        builtin_interfaces/Duration time_from_start\n", &[DURATION]),
+    standard("trajectory_msgs/JointTrajectory", "std_msgs/Header header\nstring[] joint_names\nJointTrajectoryPoint[] points\n",
+        &[HEADER, TIME, "trajectory_msgs/JointTrajectoryPoint", DURATION]),
     standard("sensor_msgs/FluidPressure", "std_msgs/Header header\nfloat64 fluid_pressure\nfloat64 variance\n", &[HEADER, TIME]),
     standard("sensor_msgs/Temperature", "std_msgs/Header header\nfloat64 temperature\nfloat64 variance\n", &[HEADER, TIME]),
     standard("sensor_msgs/Range", "std_msgs/Header header\nuint8 radiation_type\nfloat32 field_of_view\nfloat32 min_range\nfloat32 max_range\nfloat32 range\nfloat32 variance\n", &[HEADER, TIME]),
@@ -68,7 +74,8 @@ const STANDARDS: &[Standard] = &[
 ];
 
 /// The text of a definition, `std_msgs/msg/Bool` or `std_msgs/Bool`, with those of the messages in it.
-pub(super) fn definition(name: &str) -> Option<String> {
+#[must_use]
+pub fn definition(name: &str) -> Option<String> {
     let find = |name: &str| STANDARDS.iter().find(|standard| standard.name == name);
     let own = find(&name.replace("/msg/", "/"))?;
     let mut text = own.fields.to_owned();
@@ -79,25 +86,8 @@ pub(super) fn definition(name: &str) -> Option<String> {
     Some(text)
 }
 
+/// Names of all of them.
 #[cfg(test)]
-mod tests {
-    use super::super::field::Definition;
-    use super::*;
-
-    #[test]
-    fn every_message_has_all_that_is_in_it() {
-        for standard in STANDARDS {
-            let text = definition(standard.name).unwrap();
-            let read = Definition::parse(standard.name, &text).unwrap();
-            let of_number = read.numbers().len() + read.times().len();
-            assert!(of_number > 0, "{}", standard.name);
-            for path in read.numbers() {
-                assert!(read.field(&path).is_some(), "{}: {path}", standard.name);
-            }
-        }
-        let name = "geometry_msgs/msg/WrenchStamped";
-        let wrench = Definition::parse(name, &definition(name).unwrap()).unwrap();
-        assert!(wrench.numbers().contains(&"wrench.force.z".to_owned()));
-        assert!(definition("my_msgs/msg/Own").is_none());
-    }
+pub(crate) fn names() -> impl Iterator<Item = &'static str> {
+    STANDARDS.iter().map(|standard| standard.name)
 }
