@@ -93,7 +93,7 @@ impl EngineArguments {
     }
 
     fn dask(&self, engine: &Engine) -> Result<Dask, AppError> {
-        let here = || std::env::current_exe().map_err(|e| cannot_find(&e));
+        let here = || super::program::this_program().map_err(|e| cannot_find(&e));
         Ok(Dask {
             engine: engine.clone(),
             python: self.python.clone(),

@@ -86,7 +86,7 @@ impl Worker {
 pub(super) fn run(arguments: &TaskArguments) -> Result<ExitCode, AppError> {
     let plan = Plan::open(&arguments.plan)?;
     if arguments.ids.is_empty() {
-        let program = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("idc"));
+        let program = super::program::this_program().unwrap_or_else(|_| PathBuf::from("idc"));
         let text = snakefile(&program, &full(&arguments.plan)?);
         match &arguments.out {
             Some(file) => write_text(file, &text)?,
