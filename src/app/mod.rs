@@ -38,6 +38,7 @@ mod space;
 mod streaming;
 mod task;
 mod terminal;
+mod this_program;
 mod vary;
 mod view;
 mod viewer;

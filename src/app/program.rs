@@ -2,23 +2,19 @@
 
 use std::ffi::OsString;
 use std::path::PathBuf;
-use std::sync::OnceLock;
 
 use clap::{CommandFactory as _, FromArgMatches as _};
 
 use super::cli::{Cli, execute};
 use super::complaint::{complain, refuse_arguments, wants_json};
 use super::interrupt::listen;
-
-/// File of the program, where that is not the process's own.
-static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
+use super::this_program::name_this_program;
 
 /// Does what a command line asks for, its first word the program's name, and gives the exit code. `program` is the file to call for more of it, where that is not the
 /// process's own.
 pub fn run_program(arguments: impl IntoIterator<Item = OsString>, program: Option<PathBuf>) -> u8 {
     if let Some(program) = program {
-        // Called twice in a process it is the same.
-        drop(PROGRAM.set(program));
+        name_this_program(program);
     }
     let matches = match Cli::command().try_get_matches_from(arguments) {
         Ok(matches) => matches,
@@ -37,13 +33,5 @@ pub fn run_program(arguments: impl IntoIterator<Item = OsString>, program: Optio
             complain(&error, json);
             error.exit_code() as u8
         }
-    }
-}
-
-/// File to call for more of this program.
-pub(super) fn this_program() -> std::io::Result<PathBuf> {
-    match PROGRAM.get() {
-        Some(program) => Ok(program.clone()),
-        None => std::env::current_exe(),
     }
 }

@@ -12,7 +12,21 @@ pub(super) fn raised(error: &AppError) -> PyErr {
         key,
     } = Facts::of(error);
     let (line, column) = position.unzip();
-    refused(error.to_string(), (file, key, line, column))
+    refused(by_argument(&error.to_string()), (file, key, line, column))
+}
+
+/// A message that names the program's options, with Python's arguments in their place.
+fn by_argument(message: &str) -> String {
+    const NAMES: [(&str, &str); 6] = [
+        ("--set ", "set "),
+        ("--with:", "effects:"),
+        ("--force", "force=True"),
+        ("(--out)", "(out=..)"),
+        ("--out is", "out is"),
+        ("--try:", "tried:"),
+    ];
+    let named = |text: String, (option, argument): (&str, &str)| text.replace(option, argument);
+    NAMES.into_iter().fold(message.to_owned(), named)
 }
 
 /// Where a fault is: file, key, line and column.

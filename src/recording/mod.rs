@@ -4,7 +4,7 @@
 //! nothing of how it came about. [`parquet`] stores it as a table, [`csv`] reads that of a real rig, [`table`] any other's columns, and [`schema`] lists
 //! the signals that the simulated cell writes.
 
-#[cfg(feature = "parquet")]
+#[cfg(feature = "python")]
 pub mod arrow_table;
 pub mod atomic;
 pub mod claim;
