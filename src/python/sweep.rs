@@ -38,6 +38,7 @@ impl Sweep {
 #[derive(FromPyObject)]
 pub(super) enum GivenValues {
     Listed(Vec<String>),
+    Whole(i64, i64),
     Range(f64, f64),
 }
 
@@ -60,12 +61,19 @@ pub(super) fn vary(
     force: bool,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Sweep> {
-    let variable = |(key, values)| Variable {
-        key,
+    let variable = |(key, values): (String, GivenValues)| Variable {
         values: match values {
             GivenValues::Listed(texts) => Values::Listed(texts),
             GivenValues::Range(low, high) => between(low, high),
+            // Of a count the ends alone need be checked.
+            GivenValues::Whole(low, high) if scenario.0.is_count(&key, low, &[]) => {
+                Values::Whole([low, high])
+            }
+            GivenValues::Whole(low, high) => {
+                Values::Listed((low..=high).map(|value| value.to_string()).collect())
+            }
         },
+        key,
     };
     let variables = variables.into_iter().map(variable).collect();
     detached(py, progress, |reporter| {

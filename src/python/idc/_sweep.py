@@ -101,6 +101,9 @@ def vary(
 
 def _values(key: str, given: object) -> list[str] | tuple[float, float]:
     expected = "expected a pair (low, high), or a list of values"
+    if isinstance(given, range) and given.step == 1 and len(given) > 1:
+        # Whole numbers, which the extension takes apart from other pairs.
+        return given[0], given[-1]
     if isinstance(given, tuple):
         if len(given) != 2 or not all(isinstance(end, (int, float)) for end in given) or not given[0] < given[1]:
             raise Error(f"vary: {key} is {given!r}, {expected}; of a pair the first is the lower", key=key)
