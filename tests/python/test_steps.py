@@ -36,12 +36,12 @@ def test_a_cell_under_the_pressures_of_its_run_gives_its_samples():
 
 
 def test_a_controller_of_ones_own_keeps_its_force_and_ends_as_a_run():
-    bench = idc.Bench("scenarios/paper_step.toml")
+    bench = idc.Bench("scenarios/paper_step.toml", set={"bench.duration_s": 12})
     seen, pressure = bench.reset(seed=1), 1.0e5
     while not bench.done:
-        pressure = max(0.0, pressure + 0.5 * (200.0 - seen.measured_force_n))
+        pressure = max(0.0, pressure + 0.3 * (200.0 - seen.measured_force_n))
         seen = bench.step(pressure)
-    assert abs(seen.contact_force_n - 200.0) < 5.0
+    assert abs(seen.contact_force_n - 200.0) < 1.0
     done, total = bench.steps
     assert done == total
     with pytest.raises(idc.Error, match="the job is done"):

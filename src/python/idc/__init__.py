@@ -12,7 +12,7 @@ Bad input is an `idc.Error` with the file, the key and the line that it is about
 >>> idc.run("scenarios/paper_step.toml", set={"bench.duration_z": 2.0})
 Traceback (most recent call last):
 ...
-idc._error.Error: set bench.duration_z=2: scenarios/paper_step.toml: unknown key `bench.duration_z`; did you mean `duration_s`?
+idc.Error: set bench.duration_z=2: scenarios/paper_step.toml: unknown key `bench.duration_z`; did you mean `bench.duration_s`?
 """
 
 from idc._error import Error

@@ -35,5 +35,8 @@ class Error(ValueError):
         self.line = line
         self.column = column
 
+    # As users name it.
+    __module__ = "idc"
+
     def __reduce__(self) -> tuple[type[Error], tuple[object, ...]]:
         return Error, (self.message, self.file, self.key, self.line, self.column)

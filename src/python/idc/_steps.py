@@ -101,13 +101,13 @@ class Bench(_Steps):
 
     A controller of one's own, which corrects the set pressure by the load cell:
 
-    >>> bench = Bench("scenarios/paper_step.toml")
+    >>> bench = Bench("scenarios/paper_step.toml", set={"bench.duration_s": 12})
     >>> seen, pressure = bench.reset(), 1.0e5
     >>> while not bench.done:
     ...     error_n = 200.0 - seen.measured_force_n
-    ...     pressure = max(0.0, pressure + 0.5 * error_n)
+    ...     pressure = max(0.0, pressure + 0.3 * error_n)
     ...     seen = bench.step(pressure)
-    >>> abs(seen.contact_force_n - 200.0) < 5.0
+    >>> abs(seen.contact_force_n - 200.0) < 1.0
     True
     """
 
