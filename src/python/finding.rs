@@ -51,29 +51,23 @@ impl Diagnosis {
 
 /// Diagnoses a case.
 #[pyfunction]
-#[pyo3(signature = (case, scenario, tried, effort, limit_s, out, force, progress))]
-#[expect(
-    clippy::too_many_arguments,
-    reason = "the wrapper in Python names them"
-)]
 pub(super) fn diagnose(
     py: Python<'_>,
     case: PathBuf,
     scenario: Option<PathBuf>,
     tried: Option<String>,
-    effort: Option<u64>,
-    limit_s: Option<f64>,
-    out: Option<PathBuf>,
-    force: bool,
+    limits: (Option<u64>, Option<f64>),
+    out: Option<(PathBuf, bool)>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Diagnosis> {
+    let (effort, limit) = limits;
     let request = CaseRequest {
         folder: case,
         scenario,
         tried,
         effort,
-        limit: limit_s,
-        out: out.map(|out| (out, force)),
+        limit,
+        out,
     };
     detached(py, progress, |reporter| {
         let mut behind = 0;

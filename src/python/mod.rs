@@ -20,17 +20,17 @@ mod table;
 #[pyo3::pymodule(gil_used = false)]
 mod _idc {
     #[pymodule_export]
-    use super::command::main;
+    use crate::python::command::main;
     #[pymodule_export]
-    use super::finding::{Diagnosis, compare, diagnose, predict};
+    use crate::python::finding::{Diagnosis, compare, diagnose, predict};
     #[pymodule_export]
-    use super::run::{Run, run};
+    use crate::python::run::{Run, run};
     #[pymodule_export]
-    use super::scenario::{Scenario, check_file, check_scenario, load, of_json};
+    use crate::python::scenario::{Scenario, check_file, check_scenario, load, of_json};
     #[pymodule_export]
-    use super::stepwise::{Observation, Steps};
+    use crate::python::stepwise::{Observation, Steps};
     #[pymodule_export]
-    use super::sweep::{Sweep, vary};
+    use crate::python::sweep::{Sweep, vary};
     #[pymodule_export]
-    use super::table::Table;
+    use crate::python::table::Table;
 }

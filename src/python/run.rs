@@ -57,27 +57,20 @@ impl Run {
     }
 }
 
-/// Runs a scenario.
+/// Runs a scenario. Of a folder: whether new files take the place of old ones, and whether recording.rrd is among them.
 #[pyfunction]
-#[pyo3(signature = (scenario, set, effects, out, force, recording, progress))]
-#[expect(
-    clippy::too_many_arguments,
-    reason = "the wrapper in Python names them"
-)]
 pub(super) fn run(
     py: Python<'_>,
     scenario: &Scenario,
     set: Vec<SetKey>,
     effects: Vec<String>,
-    out: Option<PathBuf>,
-    force: bool,
-    recording: bool,
+    out: Option<(PathBuf, bool, bool)>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Run> {
-    let folder = out.map(|path| RunFolder {
+    let folder = out.map(|(path, force, recorded)| RunFolder {
         path,
         force,
-        recorded: recording,
+        recorded,
     });
     let work = |reporter: &mut super::call::Reporter| {
         let scenario = edited(scenario, set, &effects)?;

@@ -44,23 +44,16 @@ pub(super) enum GivenValues {
 
 /// Runs a scenario with many other values.
 #[pyfunction]
-#[pyo3(signature = (scenario, variables, effects, sampling, seed, jobs, out, force, progress))]
-#[expect(
-    clippy::too_many_arguments,
-    reason = "the wrapper in Python names them"
-)]
 pub(super) fn vary(
     py: Python<'_>,
     scenario: &Scenario,
     variables: Vec<(String, GivenValues)>,
     effects: Vec<String>,
-    sampling: &str,
-    seed: u64,
-    jobs: Option<usize>,
-    out: Option<PathBuf>,
-    force: bool,
+    points: (String, u64, Option<usize>),
+    out: Option<(PathBuf, bool)>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Sweep> {
+    let (sampling, seed, jobs) = points;
     let variable = |(key, values): (String, GivenValues)| Variable {
         values: match values {
             GivenValues::Listed(texts) => Values::Listed(texts),
@@ -83,7 +76,7 @@ pub(super) fn vary(
             sampling: sampling.parse().map_err(AppError::from)?,
             seed,
             jobs,
-            out: out.map(|out| (out, force)),
+            out,
         };
         vary_scenario(&scenario.0, &request, &mut |done, total| {
             reporter.report(done, total);

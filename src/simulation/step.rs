@@ -136,12 +136,7 @@ impl<'a> Simulation<'a> {
         for (position, offset) in positions.iter_mut().zip(arm.encoder_offset) {
             *position -= offset;
         }
-        let bandwidth = arm.servo_bandwidth;
-        let lag = |start: &f64| CommandLag::at_rest(bandwidth, *start);
-        let lags = match bandwidth.is_finite() {
-            true => positions.iter().map(lag).collect(),
-            false => Vec::new(),
-        };
+        let lags = start::lags(arm.servo_bandwidth, &positions);
         positions.push(stroke);
         let count = positions.len();
         let inertias = start::inertias(cell, &positions);

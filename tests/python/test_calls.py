@@ -138,3 +138,11 @@ def test_ctrl_c_ends_the_program_in_python_as_it_ends_the_program(tmp_path):
     _, words = process.communicate(timeout=30)
     assert process.returncode == -signal.SIGINT
     assert "interrupted: " in words and "--resume" in words
+
+
+@pytest.mark.parametrize(
+    ("limits", "words"), [({"limit_s": -1.0}, "limit_s is -1.0"), ({"effort": 0}, "effort is 0"), ({"effort": 1, "limit_s": 1.0}, "one of the two")]
+)
+def test_limits_that_are_none_are_refused(limits, words):
+    with pytest.raises(idc.Error, match=words):
+        idc.diagnose("assets/proof/cases/case-03", **limits)

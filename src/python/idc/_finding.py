@@ -156,7 +156,14 @@ def diagnose(
     >>> found.verdict
     'explained'
     """
-    return Diagnosis(_idc.diagnose(case, scenario, tried, effort, limit_s, out, force, observer(progress)))
+    if effort is not None and limit_s is not None:
+        raise Error("diagnose: effort and limit_s were given, expected one of the two")
+    if effort is not None and effort < 1:
+        raise Error(f"diagnose: effort is {effort}, expected 1 or more model evaluations")
+    if limit_s is not None and not 0.0 < limit_s < 1e9:
+        raise Error(f"diagnose: limit_s is {limit_s}, expected a time above zero [s]")
+    folder = None if out is None else (out, force)
+    return Diagnosis(_idc.diagnose(case, scenario, tried, (effort, limit_s), folder, observer(progress)))
 
 
 class Prediction(Table):

@@ -112,19 +112,15 @@ def run(
     scenario: Scenario,
     set: Sequence[SetKey],
     effects: Sequence[str],
-    out: str | PathLike[str] | None,
-    force: bool,
-    recording: bool,
+    out: tuple[str | PathLike[str], bool, bool] | None,
     progress: Progress | None,
 ) -> Run: ...
 def diagnose(
     case: str | PathLike[str],
     scenario: str | PathLike[str] | None,
     tried: str | None,
-    effort: int | None,
-    limit_s: float | None,
-    out: str | PathLike[str] | None,
-    force: bool,
+    limits: tuple[int | None, float | None],
+    out: tuple[str | PathLike[str], bool] | None,
     progress: Progress | None,
 ) -> Diagnosis: ...
 def predict(model: str | PathLike[str], text: str | None, inputs: str | PathLike[str]) -> tuple[Table, str]: ...
@@ -135,10 +131,7 @@ def vary(
     scenario: Scenario,
     variables: Sequence[tuple[str, Sequence[str] | tuple[float, float]]],
     effects: Sequence[str],
-    sampling: str,
-    seed: int,
-    jobs: int | None,
-    out: str | PathLike[str] | None,
-    force: bool,
+    points: tuple[str, int, int | None],
+    out: tuple[str | PathLike[str], bool] | None,
     progress: Progress | None,
 ) -> Sweep: ...

@@ -91,7 +91,8 @@ def run(
     """
     if isinstance(effects, str):
         effects = (effects,)
-    inner = _idc.run(load(scenario)._inner, edits(set), list(effects), out, force, recording, observer(progress))
+    folder = None if out is None else (out, force, recording)
+    inner = _idc.run(load(scenario)._inner, edits(set), list(effects), folder, observer(progress))
     return Run(inner)
 
 

@@ -94,9 +94,9 @@ def vary(
     if isinstance(effects, str):
         effects = (effects,)
     variables = [(key, _values(key, given)) for key, given in values.items()]
-    return Sweep(
-        _idc.vary(load(scenario)._inner, variables, list(effects), how, seed, jobs, out, force, observer(progress))
-    )
+    folder = None if out is None else (out, force)
+    points = (how, seed, jobs)
+    return Sweep(_idc.vary(load(scenario)._inner, variables, list(effects), points, folder, observer(progress)))
 
 
 def _values(key: str, given: object) -> list[str] | tuple[float, float]:
