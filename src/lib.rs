@@ -55,6 +55,7 @@
 //! - [`figure`]: signals as SVG pictures
 //! - [`drawing`]: a scene as an SVG picture
 //! - [`app`]: the command line and the files that it writes
+//! - `python`: the extension module of the Python package `idc`
 // Units stand in square brackets, which rustdoc would take for links.
 #![allow(rustdoc::broken_intra_doc_links)]
 
@@ -99,6 +100,8 @@ pub mod place;
 pub mod plant;
 #[cfg(feature = "cli")]
 pub mod proof;
+#[cfg(feature = "python")]
+pub mod python;
 pub mod quantity;
 pub mod recorded_arm;
 pub mod recording;

@@ -110,6 +110,31 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<ExitCode, AppError> {
     Ok(ExitCode::Done)
 }
 
+/// A scenario that can be run.
+fn of_scenario(scenario: AnyScenario, overridden: &[String]) -> Result<Report, AppError> {
+    match scenario {
+        AnyScenario::Cell(own) => cell::cell(*own, overridden),
+        AnyScenario::Bench(own) => bench::bench(*own, overridden),
+    }
+}
+
+/// What a file, or a folder, describes: the document that --json prints. What would make a refused job possible is not looked for.
+///
+/// # Errors
+/// It cannot be used.
+pub fn check_file(file: &Path) -> Result<String, AppError> {
+    explained(file)?.json()
+}
+
+/// The same of a scenario that was read before.
+///
+/// # Errors
+/// It cannot be run.
+pub fn check_scenario(template: &ScenarioTemplate) -> Result<String, AppError> {
+    let overridden = template.keys_given(cell::OVERRIDES)?;
+    of_scenario(template.with(&[])?, &overridden)?.json()
+}
+
 /// A refusal of a cell's scenario with what would help.
 fn advised(error: AppError, arguments: &CheckArguments) -> AppError {
     let quiet = arguments.quiet || arguments.json;
@@ -176,8 +201,7 @@ fn explained(file: &Path) -> Result<Report, AppError> {
         return arm::arm(file);
     }
     match scenario::load_any(file) {
-        Ok(AnyScenario::Cell(cell)) => cell::cell(*cell),
-        Ok(AnyScenario::Bench(bench)) => bench::bench(*bench),
+        Ok(scenario) => of_scenario(scenario, &scenario::keys_given(file, cell::OVERRIDES)?),
         Err(ScenarioError::OtherKind { .. }) => cell::recorded(file),
         Err(error) => Err(error.into()),
     }

@@ -5,10 +5,12 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use serde_json::{Value, json};
 
+use super::diagnose::DiagnosedCase;
 use super::error::{AppError, ExitCode};
 use super::files::{DIAGNOSIS, OverwritePolicy, SAMPLES, is_same, prepare_file};
 use super::output::say;
 use super::report::{read_json, read_samples};
+use super::run::FinishedRun;
 use super::terminal::shown_path;
 use crate::document::{Style, html, text};
 use crate::recording::Recording;
@@ -80,6 +82,40 @@ pub(super) fn run(arguments: &CompareArguments) -> Result<ExitCode, AppError> {
     Ok(ExitCode::Done)
 }
 
+/// What is compared by a caller in the same process.
+pub enum Compared<'a> {
+    /// Folders with results of one kind.
+    Folders(&'a [PathBuf]),
+    /// Runs, with their names.
+    Runs(Vec<(String, &'a FinishedRun)>),
+    /// Diagnoses, with their names.
+    Diagnoses(Vec<(String, &'a DiagnosedCase)>),
+}
+
+/// Compares as `idc compare` does: the document that --json prints, and the page.
+///
+/// # Errors
+/// A folder that cannot be compared.
+pub fn compared(of: &Compared<'_>) -> Result<(Value, String), AppError> {
+    let comparison = match of {
+        Compared::Folders(folders) => read(folders)?,
+        Compared::Diagnoses(all) => {
+            let names = all.iter().map(|(name, _)| name.clone()).collect();
+            let answers = all.iter().map(|(_, case)| case.answer().clone());
+            Comparison::of_diagnoses(names, &answers.collect::<Vec<_>>())
+        }
+        Compared::Runs(all) => {
+            let names = all.iter().map(|(name, _)| name.clone()).collect();
+            let results = all.iter().map(|(_, run)| run.result());
+            let results = results.collect::<Result<Vec<RunResult>, _>>()?;
+            let drawn = drawn(all.len()).into_iter();
+            let drawn = drawn.map(|place| (place, all[place].1.recording().clone()));
+            Comparison::of_runs(names, &results, drawn.collect())
+        }
+    };
+    Ok((as_json(&comparison), html(&comparison.document())))
+}
+
 /// Writes the page of runs: the numbers of all of them, signals of as many as there are colours.
 pub(super) fn write_page(folders: &[PathBuf], page: &Path) -> Result<(), AppError> {
     Ok(write_text(page, &html(&read(folders)?.document()))?)
@@ -131,13 +167,17 @@ fn read(folders: &[PathBuf]) -> Result<Comparison, AppError> {
 }
 
 fn print_json(compared: &Comparison, out: Option<&Path>) -> Result<ExitCode, AppError> {
+    let mut document = as_json(compared);
+    document["page"] = json!(out);
+    say(&format!("{}\n", serde_json::to_string_pretty(&document)?))?;
+    Ok(ExitCode::Done)
+}
+
+fn as_json(compared: &Comparison) -> Value {
     let number = |number: &ComparedNumber| json!({"key": number.key, "name": number.name, "values": number.values});
-    let document = json!({
+    json!({
         "folders": compared.names,
         "verdicts": compared.verdicts,
         "numbers": compared.numbers.iter().map(number).collect::<Vec<Value>>(),
-        "page": out,
-    });
-    say(&format!("{}\n", serde_json::to_string_pretty(&document)?))?;
-    Ok(ExitCode::Done)
+    })
 }

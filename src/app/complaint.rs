@@ -23,7 +23,7 @@ use crate::document::printable;
 use crate::keys::error::Location;
 use crate::metrics::MetricsError;
 use crate::run::RunError;
-use crate::scenario::location_of;
+use crate::scenario::{ScenarioError, location_of};
 
 /// The word that an error begins with.
 const WORD: Style = AnsiColor::BrightRed.on_default().bold();
@@ -59,6 +59,74 @@ pub fn refuse_arguments(error: &clap::Error) -> ! {
     }
     say_aside_styled(&error.render().ansi().to_string());
     std::process::exit(error.exit_code());
+}
+
+/// What an error is about, for a program in the same process.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Facts {
+    /// The file, if it is about one.
+    pub file: Option<String>,
+    /// Line and column in it, both from 1.
+    pub position: Option<(u32, u32)>,
+    /// Its dotted key.
+    pub key: Option<String>,
+}
+
+impl Facts {
+    /// Those of an error.
+    #[must_use]
+    pub fn of(error: &AppError) -> Self {
+        let scenario = scenario_error(error);
+        let place = location(error).or_else(|| scenario?.location().cloned());
+        let missing = match scenario {
+            Some(ScenarioError::NoSuchFile { file } | ScenarioError::Read { file, .. }) => {
+                Some(file.display().to_string())
+            }
+            _ => None,
+        };
+        Self {
+            file: (place.as_ref())
+                .map(|place| place.file.display().to_string())
+                .or(missing),
+            position: place.and_then(|place| place.position),
+            key: scenario
+                .and_then(ScenarioError::key)
+                .map(str::to_owned)
+                .or_else(|| metric_key(error)),
+        }
+    }
+}
+
+/// The fault of a settings file behind an error.
+fn scenario_error(error: &AppError) -> Option<&ScenarioError> {
+    match error {
+        AppError::Advised { source, .. } | AppError::Set { source, .. } => scenario_error(source),
+        AppError::Run(error) => match &**error {
+            RunError::Scenario(error) | RunError::Cell(CellError::Scenario(error)) => Some(error),
+            _ => None,
+        },
+        AppError::Design(error) => match &**error {
+            DesignError::File(error) => Some(error),
+            _ => None,
+        },
+        _ => None,
+    }
+}
+
+/// Key of a bound that cannot be.
+fn metric_key(error: &AppError) -> Option<String> {
+    match error {
+        AppError::Advised { source, .. } | AppError::Set { source, .. } => metric_key(source),
+        AppError::Run(error) => match &**error {
+            RunError::Metrics {
+                source:
+                    MetricsError::UnknownMetric { metric, .. } | MetricsError::Bound { metric, .. },
+                ..
+            } => Some(format!("expect.{metric}")),
+            _ => None,
+        },
+        _ => None,
+    }
 }
 
 /// Where in a file the error is.

@@ -6,6 +6,7 @@ mod cell_scene;
 mod comparison_files;
 mod fit_picture;
 mod flange_picture;
+mod in_process;
 mod one;
 mod outputs;
 mod postures_picture;
@@ -21,6 +22,7 @@ use clap::Args;
 
 pub(super) use all::natural;
 pub(super) use comparison_files::read_comparison;
+pub use in_process::{CaseRequest, DiagnosedCase, diagnose_case};
 
 use super::error::{AppError, ExitCode};
 use super::files::{OverwritePolicy, output_folder};
@@ -139,8 +141,7 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
     let prepared = one::Prepared::new(
         &arguments.case,
         (cell, tried, arguments.limit()),
-        &out,
-        policy,
+        Some((&out, policy)),
     )?;
     if policy == OverwritePolicy::Keep {
         match prepared.existing()? {
@@ -199,8 +200,7 @@ pub(super) fn answer_case(
     let prepared = one::Prepared::new(
         case,
         (None, None, EffortLimit::None),
-        out,
-        OverwritePolicy::Replace,
+        Some((out, OverwritePolicy::Replace)),
     )?;
     Ok(prepared.run(&mut |_| ())?.answer)
 }

@@ -8,6 +8,7 @@ use super::error::AppError;
 use super::interrupt::Interruptible;
 use super::progress;
 use super::terminal::say_aside;
+use super::this_program::this_program;
 use crate::quantity::counted;
 use crate::recording::provenance::BUILD;
 use crate::tasks::{
@@ -93,7 +94,7 @@ impl EngineArguments {
     }
 
     fn dask(&self, engine: &Engine) -> Result<Dask, AppError> {
-        let here = || std::env::current_exe().map_err(|e| cannot_find(&e));
+        let here = || this_program().map_err(|e| cannot_find(&e));
         Ok(Dask {
             engine: engine.clone(),
             python: self.python.clone(),

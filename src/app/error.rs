@@ -212,6 +212,12 @@ pub enum AppError {
         /// The fault, and what was expected.
         reason: String,
     },
+    /// A law of a user's own that is none.
+    #[error("tried: {reason}")]
+    Tried {
+        /// The fault, and what was expected.
+        reason: String,
+    },
     /// An effect that there is not.
     #[error("there is no effect `{name}`: {advice}")]
     NoEffect {

@@ -26,10 +26,12 @@ use crate::plant::Channel;
 use crate::quantity::{counted, significant};
 use crate::recording::atomic::write_all;
 use crate::recording::csv::columns_text;
+use crate::recording::long_column::LongColumn;
 use crate::scenario::arm_file::{ArmFile, is_arm_file, load_arm_file};
 use crate::scenario::postures_file::is_postures_file;
 use crate::scenario::removal_table::is_removal_table;
 use crate::scenario::rig_file::{RigFile, load_rig};
+use crate::scenario::{arm_file, rig_file};
 
 #[derive(Debug, Args)]
 pub(super) struct PredictArguments {
@@ -58,38 +60,138 @@ struct Made {
     out: PathBuf,
     /// Its text.
     csv: String,
+    /// The same as columns, the time [s] first; none where the text is all there is.
+    columns: Vec<(String, LongColumn)>,
     /// What is printed of it.
     said: String,
     /// The same for a program.
     document: Value,
 }
 
+/// What predicts.
+enum Model {
+    Rig(Box<RigFile>),
+    Arm(Box<ArmFile>),
+    Postures(PathBuf),
+    Table(PathBuf),
+}
+
+impl Model {
+    fn load(file: &Path) -> Result<Self, AppError> {
+        Ok(if is_removal_table(file) {
+            Self::Table(file.to_owned())
+        } else if is_postures_file(file) {
+            Self::Postures(file.to_owned())
+        } else if is_arm_file(file) {
+            Self::Arm(Box::new(load_arm_file(file)?))
+        } else {
+            Self::Rig(Box::new(load_rig(file)?))
+        })
+    }
+
+    fn predict(&self, inputs: &Path, out: PathBuf) -> Result<Made, AppError> {
+        match self {
+            Self::Table(file) => of_table(file, inputs, out),
+            Self::Postures(file) => of_postures(file, inputs, out),
+            Self::Arm(arm) => of_arm(arm, inputs, out),
+            Self::Rig(rig) => match &rig.flange {
+                Some(flange) => of_flange((rig, flange), inputs, out),
+                None => of_recording(rig, inputs, out),
+            },
+        }
+    }
+}
+
+/// A prediction for a caller in the same process.
+pub struct PredictedTable {
+    /// The predicted columns with their 90 % bands, the time [s] first.
+    pub columns: Vec<(String, LongColumn)>,
+    /// How far off they are, as --json prints it.
+    pub document: Value,
+}
+
+/// Predicts as `idc predict` does; nothing is written. `text` is that of a model that could stand in the file `model`, where it does not stand there.
+///
+/// # Errors
+/// What is wrong with model or inputs.
+pub fn predict_table_of(
+    model: &Path,
+    text: Option<&str>,
+    inputs: &Path,
+) -> Result<PredictedTable, AppError> {
+    let loaded = match text {
+        None => Model::load(model)?,
+        Some(text) => match says_kind(text, "recorded_arm") {
+            true => Model::Arm(Box::new(arm_file::from_text(model, text)?)),
+            false => Model::Rig(Box::new(rig_file::from_text(model, text)?)),
+        },
+    };
+    let Made {
+        csv,
+        columns,
+        mut document,
+        ..
+    } = loaded.predict(inputs, PathBuf::new())?;
+    if let Some(numbers) = document.as_object_mut() {
+        numbers.remove("prediction");
+    }
+    let columns = match columns.is_empty() {
+        true => columns_of_text(&csv),
+        false => columns,
+    };
+    Ok(PredictedTable { columns, document })
+}
+
+/// Whether a model's text says at its top that it is of this kind.
+fn says_kind(text: &str, kind: &str) -> bool {
+    let line = format!("kind = \"{kind}\"");
+    text.lines().any(|own| own.trim_end() == line)
+}
+
+/// Columns of a table whose cells hold no commas; those with a cell that is no number are of names.
+fn columns_of_text(csv: &str) -> Vec<(String, LongColumn)> {
+    let mut rows = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let names = rows.next().unwrap_or_default();
+    let rows: Vec<Vec<&str>> = rows.collect();
+    let column = |place: usize| {
+        let cells: Vec<&str> = (rows.iter())
+            .map(|row| row.get(place).copied().unwrap_or_default())
+            .collect();
+        let number = |cell: &&str| match cell.is_empty() {
+            true => Some(f64::NAN),
+            false => cell.parse().ok(),
+        };
+        match cells.iter().map(number).collect::<Option<Vec<f64>>>() {
+            Some(numbers) => LongColumn::Numbers(numbers),
+            None => LongColumn::Names(cells.into_iter().map(str::to_owned).collect()),
+        }
+    };
+    let named = names.iter().enumerate();
+    named
+        .map(|(place, name)| ((*name).to_owned(), column(place)))
+        .collect()
+}
+
+/// Columns with their time [s].
+fn timed(time: &[f64], columns: &[(&str, &[f64])]) -> Vec<(String, LongColumn)> {
+    let first = [("time_s", time)].into_iter();
+    let all = first.chain(columns.iter().copied());
+    all.map(|(name, values)| (name.to_owned(), LongColumn::Numbers(values.to_vec())))
+        .collect()
+}
+
 /// Predicts and writes: all, or nothing.
 pub(super) fn predict(arguments: &PredictArguments) -> Result<ExitCode, AppError> {
     let outs = outs(arguments)?;
+    let model = Model::load(&arguments.rig)?;
+    let hidden = arguments.quiet || arguments.json || !matches!(model, Model::Rig(_));
+    let spinner = progress::spinner("simulating", hidden);
     let all = arguments.inputs.iter().zip(outs);
-    let made: Vec<Made> = if is_removal_table(&arguments.rig) {
-        let made = all.map(|(inputs, out)| of_table(&arguments.rig, inputs, out));
-        made.collect::<Result<_, _>>()?
-    } else if is_postures_file(&arguments.rig) {
-        let made = all.map(|(inputs, out)| of_postures(&arguments.rig, inputs, out));
-        made.collect::<Result<_, _>>()?
-    } else if is_arm_file(&arguments.rig) {
-        let arm = load_arm_file(&arguments.rig)?;
-        let made = all.map(|(inputs, out)| of_arm(&arm, inputs, out));
-        made.collect::<Result<_, _>>()?
-    } else {
-        let rig = load_rig(&arguments.rig)?;
-        let of_rig = |(inputs, out): (&PathBuf, PathBuf)| match &rig.flange {
-            Some(flange) => of_flange((&rig, flange), inputs, out),
-            None => of_recording(&rig, inputs, out),
-        };
-        let hidden = arguments.quiet || arguments.json;
-        let spinner = progress::spinner("simulating", hidden);
-        let made: Result<Vec<Made>, AppError> = all.map(of_rig).collect();
-        spinner.finish_and_clear();
-        made?
-    };
+    let made: Result<Vec<Made>, AppError> = all
+        .map(|(inputs, out)| model.predict(inputs, out))
+        .collect();
+    spinner.finish_and_clear();
+    let made = made?;
     let files: Vec<(&PathBuf, &String)> = made.iter().map(|one| (&one.out, &one.csv)).collect();
     let paths: Vec<&PathBuf> = files.iter().map(|(path, _)| *path).collect();
     let _claims = prepare_files(&paths, "--out", OverwritePolicy::of(arguments.force))?;
@@ -179,6 +281,7 @@ fn of_recording(rig: &RigFile, inputs: &Path, out: PathBuf) -> Result<Made, AppE
         .collect();
     let rms: BTreeMap<&str, f64> = off.iter().map(|e| (e.column, e.rms)).collect();
     Ok(Made {
+        columns: timed(time, &columns),
         said: text(&out, time.len(), &notes, &off),
         document: serde_json::json!({
             "rig": rig.path.display().to_string(),
@@ -213,6 +316,7 @@ fn of_arm(arm: &ArmFile, inputs: &Path, out: PathBuf) -> Result<Made, AppError> 
     let rms: BTreeMap<&str, f64> = off.iter().map(|e| (e.column, e.rms)).collect();
     let samples = predicted.time.len();
     Ok(Made {
+        columns: timed(&predicted.time, &columns),
         csv: columns_text(&predicted.time, &columns)?,
         said: text(&out, samples, &predicted.notes, &off),
         document: serde_json::json!({
@@ -271,6 +375,7 @@ fn of_flange(
     let _ = writeln!(said, "{samples} samples written to {}", shown_path(&out));
     let force = COLUMNS[Channel::Force as usize];
     Ok(Made {
+        columns: timed(&made.time, &[(force, &made.force)]),
         csv: columns_text(&made.time, &[(force, &made.force)])?,
         document: serde_json::json!({
             "rig": rig.path.display().to_string(),
@@ -305,6 +410,7 @@ fn of_table(rig: &Path, inputs: &Path, out: PathBuf) -> Result<Made, AppError> {
             "rms_of_log_volume": left.log,
         }),
         csv,
+        columns: Vec::new(),
         out,
     })
 }
@@ -334,6 +440,7 @@ fn of_postures(file: &Path, inputs: &Path, out: PathBuf) -> Result<Made, AppErro
             "rms": rms,
         }),
         csv: predicted.csv,
+        columns: Vec::new(),
         said,
         out,
     })

@@ -135,7 +135,9 @@ fn rendered(folder: &Path, render: Renderer) -> Result<(&'static str, String), A
         let swept = read_json(&folder.join(SWEEP))?;
         (
             "sweep",
-            render(&vary::document(&swept, &folder.join(vary::RUNS))?),
+            render(&vary::document(&swept, &|wanted| {
+                vary::columns(&folder.join(vary::RUNS), wanted)
+            })?),
         )
     } else if folder.join(FLEET).is_file() {
         let found = read_json(&folder.join(FLEET))?;

@@ -2,6 +2,7 @@
 
 mod cell_run;
 mod command;
+mod in_process;
 mod job;
 mod numbers;
 mod settings;
@@ -11,6 +12,7 @@ mod variants;
 
 pub(super) use cell_run::{Listener, RunPart};
 pub(super) use command::RunArguments;
+pub use in_process::{EditedScenario, FinishedRun, RunFolder};
 pub(super) use numbers::{Numbers, can_run, numbers};
 pub(super) use settings::blamed;
 

@@ -7,6 +7,7 @@ use clap::{Args, ValueEnum};
 use super::engine::{full, tell_unfit};
 use super::error::{AppError, ExitCode};
 use super::output::say;
+use super::this_program::this_program;
 use super::{fleet, vary};
 use crate::recording::atomic::write_text;
 use crate::tasks::{Plan, Store, Task, TaskError, snakefile};
@@ -86,7 +87,7 @@ impl Worker {
 pub(super) fn run(arguments: &TaskArguments) -> Result<ExitCode, AppError> {
     let plan = Plan::open(&arguments.plan)?;
     if arguments.ids.is_empty() {
-        let program = std::env::current_exe().unwrap_or_else(|_| PathBuf::from("idc"));
+        let program = this_program().unwrap_or_else(|_| PathBuf::from("idc"));
         let text = snakefile(&program, &full(&arguments.plan)?);
         match &arguments.out {
             Some(file) => write_text(file, &text)?,

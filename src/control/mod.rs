@@ -2,5 +2,6 @@
 
 pub mod force;
 pub mod law;
+pub mod observed;
 pub mod servo;
 pub mod transmission;

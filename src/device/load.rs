@@ -4,7 +4,7 @@
 pub const FINE_SWING: f64 = 0.15;
 
 /// Motion of the piston.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PistonMotion {
     /// Stroke from the retracted end [m].
     pub stroke: f64,

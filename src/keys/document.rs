@@ -56,6 +56,11 @@ pub(crate) fn read_text(file: &Path) -> Result<String, ScenarioError> {
     })
 }
 
+/// Tables and keys as JSON has them, as a TOML file would.
+pub(crate) fn toml_text(tables: &serde_json::Value) -> Result<String, String> {
+    toml::to_string(tables).map_err(|error| error.to_string())
+}
+
 /// Where a key stands in a file that has been read before; none if it does not stand there.
 pub(crate) fn location_of_key(file: &Path, key: &str, schema: u32) -> Option<Location> {
     let text = read_text(file).ok()?;

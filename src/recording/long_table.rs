@@ -44,14 +44,7 @@ pub fn write_groups<E: From<RecordingError>>(
     columns: &[(&str, bool)],
     mut next: impl FnMut() -> Result<Option<Vec<LongColumn>>, E>,
 ) -> Result<(), E> {
-    let fields = columns.iter().map(|(name, names)| {
-        let kind = match names {
-            true => DataType::Dictionary(Box::new(DataType::Int32), Box::new(DataType::Utf8)),
-            false => DataType::Float64,
-        };
-        Field::new(*name, kind, true)
-    });
-    let schema = Arc::new(Schema::new(fields.collect::<Vec<_>>()));
+    let schema = schema(columns);
     let properties = properties(columns);
     let mut fault = None;
     let written = write_atomic(path, |file| -> Result<(), ParquetError> {
@@ -76,6 +69,29 @@ pub fn write_groups<E: From<RecordingError>>(
         Some(error) => Err(error),
         None => Ok(written?),
     }
+}
+
+fn schema(columns: &[(&str, bool)]) -> Arc<Schema> {
+    let fields = columns.iter().map(|(name, names)| {
+        let kind = match names {
+            true => DataType::Dictionary(Box::new(DataType::Int32), Box::new(DataType::Utf8)),
+            false => DataType::Float64,
+        };
+        Field::new(*name, kind, true)
+    });
+    Arc::new(Schema::new(fields.collect::<Vec<_>>()))
+}
+
+/// Columns by name, all of one length, as the tables of this file have them.
+#[cfg(feature = "python")]
+pub(super) fn batch_of_columns(
+    columns: &[(String, LongColumn)],
+) -> Result<RecordBatch, arrow::error::ArrowError> {
+    let kinds: Vec<(&str, bool)> = (columns.iter())
+        .map(|(name, column)| (name.as_str(), matches!(column, LongColumn::Names(_))))
+        .collect();
+    let arrays = columns.iter().map(|(_, column)| array(column)).collect();
+    RecordBatch::try_new(schema(&kinds), arrays)
 }
 
 fn array(column: &LongColumn) -> ArrayRef {

@@ -137,7 +137,7 @@ fn column_meanings(recording: &Recording) -> String {
     serde_json::Value::Object(columns).to_string()
 }
 
-fn batch_of(recording: &Recording) -> Result<RecordBatch, arrow::error::ArrowError> {
+pub(super) fn batch_of(recording: &Recording) -> Result<RecordBatch, arrow::error::ArrowError> {
     let time_name = column_name(schema::TIME, Unit::Second);
     let phases = phase_column(recording);
     let mut fields = vec![

@@ -37,7 +37,7 @@ const CHANNELS: [&str; 25] = [
 ];
 
 /// True state of the rig at a moment, as no sensor shows it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RigTruth {
     /// Time [s].
     pub time: f64,

@@ -7,6 +7,7 @@ use super::estimator::RigEstimator;
 use super::load::load_at;
 use super::sample::{RigLog, RigSample, RigTruth};
 use crate::control::force::{ForceController, ForceObservation, Pressing};
+use crate::control::observed::Observed;
 use crate::device::{Device, DeviceState, PistonMotion};
 use crate::effects::actual;
 use crate::physics::valve::ValvePosition;
@@ -95,6 +96,8 @@ pub struct RigSimulation<'a> {
     errors: RunningSensors,
     sensors: SensorChain,
     readings: Readings,
+    /// True state at the last sample.
+    truth: RigTruth,
     estimator: Option<RigEstimator>,
     /// Set pressure of the last step [Pa gauge].
     applied: f64,
@@ -133,6 +136,7 @@ impl<'a> RigSimulation<'a> {
             errors: RunningSensors::new(actual.sensors),
             sensors: SensorChain::new(&scenario.sensing, scenario.seed),
             readings: Readings::default(),
+            truth: RigTruth::default(),
             estimator: scenario.estimator.as_ref().map(RigEstimator::new),
             applied: 0.0,
             steps: 0,
@@ -200,10 +204,18 @@ impl<'a> RigSimulation<'a> {
     /// # Errors
     /// The reason why the run stopped.
     pub fn step(&mut self) -> Result<(), RigError> {
+        let wanted = self.set_pressure(self.time());
+        self.step_at(wanted)
+    }
+
+    /// The same with a set pressure [Pa gauge] that is given, whatever the scenario commands.
+    ///
+    /// # Errors
+    /// The reason why the run stopped.
+    pub fn step_at(&mut self, wanted: f64) -> Result<(), RigError> {
         let scenario = &self.rig.scenario;
         let time = self.time();
         self.device.state.valve = held(&scenario.valve, time).unwrap_or(ValvePosition::Extend);
-        let wanted = self.set_pressure(time);
         self.applied = self.sensors.command(wanted, scenario.step);
         let (mut load, moment) = self.load();
         let cut = (scenario.step, scenario.substeps);
@@ -259,6 +271,39 @@ impl<'a> RigSimulation<'a> {
         self.truth_under(&load, moment.as_ref())
     }
 
+    /// Contact force asked for at the last sample [N]; NaN where pressures are.
+    fn desired_force(&self) -> f64 {
+        match &self.rig.scenario.command {
+            CommandScenario::Force(steps) => held(steps, self.truth.time).unwrap_or(0.0),
+            CommandScenario::SetPressure(_) => f64::NAN,
+        }
+    }
+
+    /// What there is to see of it after the last step.
+    pub fn observed(&self) -> Observed {
+        let (truth, readings, device) = (&self.truth, &self.readings, &self.device);
+        let stroke = truth.motion.stroke;
+        let [extending, retracting] = device.device.pressures(&device.state, stroke);
+        let desired = self.desired_force();
+        [
+            truth.time,
+            desired,
+            desired,
+            truth.contact_force,
+            readings.force,
+            stroke,
+            truth.motion.speed,
+            readings.stroke,
+            self.applied,
+            truth.regulator_pressure,
+            readings.regulator_pressure,
+            extending,
+            retracting,
+            self.rig.actual.gravity_along_extension,
+            f64::NAN,
+        ]
+    }
+
     fn truth_under(&self, load: &PistonLoad<'_>, moment: Option<&Moment>) -> RigTruth {
         let (plant, device, motion) = (&self.rig.actual, &self.device.device, self.device.motion);
         let force = device.piston_force(&self.device.state, motion);
@@ -282,6 +327,7 @@ impl<'a> RigSimulation<'a> {
             stroke: truth.motion.stroke,
             regulator_pressure: truth.regulator_pressure,
         };
+        self.truth = truth;
         let mut read = self.errors.read(truth.time, &there, truth.acceleration);
         if let Some(moment) = moment {
             read.add(self.rig.actual.reading_terms(&Moment {
@@ -298,10 +344,7 @@ impl<'a> RigSimulation<'a> {
                 regulator_pressure: read.regulator_pressure,
             },
         );
-        let desired = match &self.rig.scenario.command {
-            CommandScenario::Force(steps) => held(steps, truth.time).unwrap_or(0.0),
-            CommandScenario::SetPressure(_) => f64::NAN,
-        };
+        let desired = self.desired_force();
         let estimate = self.estimator.as_mut().and_then(|estimator| {
             estimator.update(truth.time, &self.readings, self.device.state.valve)
         });

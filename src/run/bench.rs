@@ -26,6 +26,18 @@ pub fn run_bench(
     observer: &mut dyn FnMut(&RigSimulation<'_>),
 ) -> Result<FinishedBench, RunError> {
     let (recording, stop) = rig.run(observer)?;
+    finish_bench(rig, recording, stop)
+}
+
+/// Measures what was simulated of a bench.
+///
+/// # Errors
+/// It could not be measured.
+pub fn finish_bench(
+    rig: &Rig,
+    recording: Recording,
+    stop: Option<RigError>,
+) -> Result<FinishedBench, RunError> {
     let summary = summarise_bench(&recording, &limits(&rig.scenario))
         .map_err(RunError::metrics(&rig.scenario.path))?;
     Ok(FinishedBench {

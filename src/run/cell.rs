@@ -33,6 +33,14 @@ pub fn run_cell(
     cell: &Cell,
     observer: &mut dyn FnMut(&Simulation<'_>),
 ) -> Result<FinishedCell, RunError> {
+    finish_cell(cell, cell.run(observer)?)
+}
+
+/// Measures what was simulated of a cell.
+///
+/// # Errors
+/// It could not be measured.
+pub fn finish_cell(cell: &Cell, run: CellRun) -> Result<FinishedCell, RunError> {
     let CellRun {
         recording,
         frames,
@@ -40,7 +48,7 @@ pub fn run_cell(
         stop,
         edge,
         steps_per_mass_matrix,
-    } = cell.run(observer)?;
+    } = run;
     let recording = with_arm_sensors(cell, recording, &contact_points)?;
     let mut summary = summarise(&recording, &limits(cell))
         .map_err(RunError::metrics(&cell.setup.scenario.path))?;

@@ -33,6 +33,43 @@ pub struct Outcome {
     pub stop: Option<String>,
 }
 
+/// A run that has ended, with all that its page is made of.
+pub enum Finished {
+    /// Of a cell.
+    Cell(Box<FinishedCell>),
+    /// Of a bench.
+    Bench(Box<FinishedBench>),
+}
+
+impl Finished {
+    /// Its recording, until it ended or was stopped.
+    #[must_use]
+    pub fn recording(&self) -> &Recording {
+        match self {
+            Self::Cell(run) => &run.recording,
+            Self::Bench(run) => &run.recording,
+        }
+    }
+
+    /// Metrics by their name in summary.json, unit included, in the order of their list; none where the run does not determine one.
+    #[must_use]
+    pub fn metrics(&self) -> Vec<(&'static str, Option<f64>)> {
+        match self {
+            Self::Cell(run) => values(METRICS, &run.summary),
+            Self::Bench(run) => values(BENCH_METRICS, &run.summary),
+        }
+    }
+
+    /// Reason for an early stop.
+    #[must_use]
+    pub fn stop(&self) -> Option<String> {
+        match self {
+            Self::Cell(run) => run.stop.as_ref().map(ToString::to_string),
+            Self::Bench(run) => run.stop.as_ref().map(ToString::to_string),
+        }
+    }
+}
+
 impl Job {
     /// Reads a scenario file and checks it to its end.
     ///
@@ -74,26 +111,46 @@ impl Job {
     ///
     /// # Errors
     /// Nothing could be recorded or measured.
-    pub fn run(&self, progress: &mut dyn FnMut(usize, usize)) -> Result<Outcome, RunError> {
+    pub fn finish(&self, progress: &mut dyn FnMut(usize, usize)) -> Result<Finished, RunError> {
         Ok(match self {
             Self::Cell(cell) => {
                 let run = run_cell(cell, &mut |s| progress(s.steps(), s.total_steps()))?;
-                Outcome {
-                    bounds: run.bounds(cell)?,
-                    metrics: values(METRICS, &run.summary),
-                    recording: run.recording,
-                    stop: run.stop.map(|stop| stop.to_string()),
-                }
+                Finished::Cell(Box::new(run))
             }
             Self::Bench(rig) => {
                 let run = run_bench(rig, &mut |s| progress(s.steps(), s.total_steps()))?;
-                Outcome {
-                    bounds: run.bounds(rig)?,
-                    metrics: values(BENCH_METRICS, &run.summary),
-                    recording: run.recording,
-                    stop: run.stop.map(|stop| stop.to_string()),
-                }
+                Finished::Bench(Box::new(run))
             }
+        })
+    }
+
+    /// Bounds that the scenario sets on the numbers of a run of it.
+    ///
+    /// # Errors
+    /// An unknown metric.
+    pub fn bounds(&self, finished: &Finished) -> Result<Vec<BoundCheck>, RunError> {
+        match (self, finished) {
+            (Self::Cell(cell), Finished::Cell(run)) => run.bounds(cell),
+            (Self::Bench(rig), Finished::Bench(run)) => run.bounds(rig),
+            // Of another job: none are of it.
+            _ => Ok(Vec::new()),
+        }
+    }
+
+    /// As `finish`: what is asked for most.
+    ///
+    /// # Errors
+    /// Nothing could be recorded or measured.
+    pub fn run(&self, progress: &mut dyn FnMut(usize, usize)) -> Result<Outcome, RunError> {
+        let finished = self.finish(progress)?;
+        Ok(Outcome {
+            bounds: self.bounds(&finished)?,
+            metrics: finished.metrics(),
+            stop: finished.stop(),
+            recording: match finished {
+                Finished::Cell(run) => run.recording,
+                Finished::Bench(run) => run.recording,
+            },
         })
     }
 }

@@ -18,9 +18,9 @@ mod error;
 mod job;
 mod result;
 
-pub use bench::{FinishedBench, run_bench};
-pub use cell::{FinishedCell, run_cell};
+pub use bench::{FinishedBench, finish_bench, run_bench};
+pub use cell::{FinishedCell, finish_cell, run_cell};
 pub use effects::{apply_effects, nominal_of};
 pub use error::RunError;
-pub use job::{Job, Outcome};
+pub use job::{Finished, Job, Outcome};
 pub use result::{ChamferLimits, RunKind, RunOrigin, RunResult, RunSummary, outside};

@@ -107,7 +107,15 @@ pub fn location_of(file: &Path, key: &str) -> Option<Location> {
 /// # Errors
 /// The file cannot be read, or is not TOML.
 pub fn keys_given(file: &Path, table: &str) -> Result<Vec<String>, ScenarioError> {
-    let text = read_text(file)?;
-    let document = Document::new(file, &text, SCHEMA)?;
+    keys_of_text(file, &read_text(file)?, table)
+}
+
+/// As `keys_given`, of a text that stands, or could stand, in the file.
+pub(super) fn keys_of_text(
+    file: &Path,
+    text: &str,
+    table: &str,
+) -> Result<Vec<String>, ScenarioError> {
+    let document = Document::new(file, text, SCHEMA)?;
     Ok(document.keys_in(table).map(str::to_owned).collect())
 }

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use toml_edit::{DocumentMut, TomlError, Value};
 
 use super::AnyScenario;
-use super::any::from_text;
+use super::any::{from_text, keys_of_text};
 use super::sections::{bench_sections, scenario_sections};
-use crate::keys::document::read_text;
+use crate::keys::document::{read_text, toml_text};
 use crate::keys::error::{Location, ScenarioError};
 use crate::keys::suggestion::nearest_dotted;
 
@@ -32,6 +32,8 @@ pub struct ScenarioTemplate {
     text: String,
     title: String,
     is_bench: bool,
+    /// Whether it stands in no file.
+    is_text: bool,
 }
 
 impl ScenarioTemplate {
@@ -40,7 +42,26 @@ impl ScenarioTemplate {
     /// # Errors
     /// It is no scenario as it stands.
     pub fn read(path: &Path) -> Result<Self, ScenarioError> {
-        let text = read_text(path)?;
+        Self::new(path, read_text(path)?, false)
+    }
+
+    /// A scenario that stands in no file, of its tables and keys as JSON has them. Its paths lead from the folder of `path`, by which messages call it.
+    ///
+    /// # Errors
+    /// It is no scenario.
+    pub fn of_json(path: &Path, tables: &serde_json::Value) -> Result<Self, ScenarioError> {
+        let text = toml_text(tables).map_err(|reason| ScenarioError::Syntax {
+            location: bare(path),
+            reason,
+        })?;
+        let without_line = |error: ScenarioError| match error.location() {
+            Some(location) if location.file == path => error.at(bare(path)),
+            _ => error,
+        };
+        Self::new(path, text, true).map_err(without_line)
+    }
+
+    fn new(path: &Path, text: String, is_text: bool) -> Result<Self, ScenarioError> {
         let (title, is_bench) = match from_text(path, &text)? {
             AnyScenario::Cell(cell) => (cell.title, false),
             AnyScenario::Bench(bench) => (bench.title, true),
@@ -50,7 +71,22 @@ impl ScenarioTemplate {
             text,
             title,
             is_bench,
+            is_text,
         })
+    }
+
+    /// Whether it stands in no file.
+    #[must_use]
+    pub fn is_text(&self) -> bool {
+        self.is_text
+    }
+
+    /// Keys that it gives in a table, those of tables in it by their names.
+    ///
+    /// # Errors
+    /// None, once it has been read.
+    pub fn keys_given(&self, table: &str) -> Result<Vec<String>, ScenarioError> {
+        keys_of_text(&self.path, &self.text, table)
     }
 
     /// Its file.
@@ -157,11 +193,7 @@ impl ScenarioTemplate {
     }
 
     fn bare(&self) -> Location {
-        Location {
-            file: self.path.clone(),
-            position: None,
-            excerpt: None,
-        }
+        bare(&self.path)
     }
 
     fn without_line(&self, error: ScenarioError) -> ScenarioError {
@@ -170,6 +202,15 @@ impl ScenarioTemplate {
             Some(location) if location.file == self.path => error.at(self.bare()),
             _ => error,
         }
+    }
+}
+
+/// A file, and no place in it.
+fn bare(file: &Path) -> Location {
+    Location {
+        file: file.to_owned(),
+        position: None,
+        excerpt: None,
     }
 }
 

@@ -39,10 +39,23 @@ impl Cell {
             stop = simulation.step().err();
             observer(&simulation);
         }
+        CellRun::of(simulation, stop)
+    }
+}
+
+impl CellRun {
+    /// What a simulation gave, which has ended, or was stopped for this reason.
+    ///
+    /// # Errors
+    /// Nothing could be recorded.
+    pub fn of(
+        mut simulation: Simulation<'_>,
+        stop: Option<SimulationError>,
+    ) -> Result<Self, RecordingError> {
         let steps_per_mass_matrix = simulation.steps_per_mass_matrix();
         let contact_points = simulation.take_contact_points();
         let (samples, frames, edge) = simulation.into_logs();
-        Ok(CellRun {
+        Ok(Self {
             contact_points,
             steps_per_mass_matrix,
             edge: edge.as_ref().map(profile),

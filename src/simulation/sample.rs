@@ -79,6 +79,15 @@ impl SampleLog {
         self.rows.extend_from_slice(joints.as_flattened());
     }
 
+    /// Contact force of the last sample [N]; zero before the first.
+    pub fn last_contact_force(&self) -> f64 {
+        const PLACE: usize = 1;
+        debug_assert_eq!(schema::SIGNALS[PLACE].quantity, schema::CONTACT_FORCE);
+        let width = Self::width(self.joints, self.cutting);
+        let last = self.count().checked_sub(1);
+        last.map_or(0.0, |last| self.rows[last * width + PLACE])
+    }
+
     /// Number of samples.
     pub fn count(&self) -> usize {
         self.time.len()

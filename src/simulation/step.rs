@@ -1,6 +1,7 @@
 //! One step of the coupled cell, read from top to bottom.
 
 mod checks;
+mod observed;
 mod record;
 mod saturation;
 mod start;
@@ -75,6 +76,8 @@ pub struct Simulation<'a> {
     controller: ForceController,
     /// Set pressure that the controller gave last, held until its next period [Pa gauge].
     answer: f64,
+    /// Set pressure that is given for the step, in place of the controller's [Pa gauge].
+    given: Option<f64>,
     /// Errors of the sensors.
     errors: RunningSensors,
     sensors: SensorChain,
@@ -133,12 +136,7 @@ impl<'a> Simulation<'a> {
         for (position, offset) in positions.iter_mut().zip(arm.encoder_offset) {
             *position -= offset;
         }
-        let bandwidth = arm.servo_bandwidth;
-        let lag = |start: &f64| CommandLag::at_rest(bandwidth, *start);
-        let lags = match bandwidth.is_finite() {
-            true => positions.iter().map(lag).collect(),
-            false => Vec::new(),
-        };
+        let lags = start::lags(arm.servo_bandwidth, &positions);
         positions.push(stroke);
         let count = positions.len();
         let inertias = start::inertias(cell, &positions);
@@ -161,6 +159,7 @@ impl<'a> Simulation<'a> {
             reference,
             controller: cell.controller.clone(),
             answer: set_pressure,
+            given: None,
             errors: RunningSensors::new(cell.setup.actual.sensors),
             sensors,
             readings: Readings {
@@ -234,6 +233,15 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// The reason why the run stopped; the last sample is recorded if it is finite.
     pub fn step(&mut self) -> Result<(), SimulationError> {
+        self.step_timed(None)
+    }
+
+    /// The same with a set pressure [Pa gauge] that is given, whatever the controller would.
+    ///
+    /// # Errors
+    /// As `step`.
+    pub fn step_at(&mut self, wanted: f64) -> Result<(), SimulationError> {
+        self.given = Some(wanted);
         self.step_timed(None)
     }
 
@@ -331,6 +339,10 @@ impl<'a> Simulation<'a> {
 
     fn set_pressure(&mut self, reference: &Reference) -> f64 {
         let step = self.cell.setup.scenario.simulation.step;
+        if let Some(given) = self.given {
+            self.answer = given;
+            return self.sensors.command(given, step);
+        }
         if !self
             .steps
             .is_multiple_of(self.cell.setup.scenario.controller.steps(step))

@@ -14,7 +14,7 @@ use crate::shell::word;
 const BYTES: f64 = 320.0;
 
 /// A bench that can be run.
-pub(super) fn bench(scenario: BenchScenario) -> Result<Report, AppError> {
+pub(super) fn bench(scenario: BenchScenario, overridden: &[String]) -> Result<Report, AppError> {
     let file = scenario.path.clone();
     metrics::validate(metrics::BENCH_METRICS, &scenario.expect)
         .map_err(RunError::metrics(&file))?;
@@ -23,7 +23,7 @@ pub(super) fn bench(scenario: BenchScenario) -> Result<Report, AppError> {
     let kind = "a bench to simulate: the device without an arm";
     let mut report = Report::new(&file, kind, Some(&scenario.title));
     report.device(&rig.actual.device);
-    overrides(&mut report, &file)?;
+    overrides(&mut report, overridden);
     report.fact("load", load(&scenario.load));
     if let Some(hand) = &scenario.hand {
         let [force, frequency] = [hand.peak_force, hand.frequency].map(shown);

@@ -22,8 +22,11 @@ use crate::workpiece::EdgeCurve;
 const BYTES: f64 = 280.0;
 const BYTES_PER_AXIS: f64 = 45.0;
 
+/// The table of a scenario's own numbers of the device.
+pub(super) const OVERRIDES: &str = "device.override";
+
 /// A cell that can be run.
-pub(super) fn cell(scenario: Scenario) -> Result<Report, AppError> {
+pub(super) fn cell(scenario: Scenario, overridden: &[String]) -> Result<Report, AppError> {
     let file = scenario.path.clone();
     let known = metrics::validate_cell(&scenario.expect, &scenario.expect_of_passes());
     known.map_err(RunError::metrics(&file))?;
@@ -34,7 +37,7 @@ pub(super) fn cell(scenario: Scenario) -> Result<Report, AppError> {
     estimated(&mut report, cell.estimated.as_ref())?;
     report.device(&scenario.nominal.device);
     flange(&mut report, &FlangeLoad::of(scenario, &cell.setup.arm));
-    overrides(&mut report, &file)?;
+    overrides(&mut report, overridden);
     if scenario.device.locked {
         report.fact("", "its slide is clamped (device.locked)");
     }
@@ -214,7 +217,7 @@ pub(super) fn recorded(file: &Path) -> Result<Report, AppError> {
     let mut report = Report::new(file, kind, Some(&scenario.title));
     arm(&mut report, &scenario.arm, loaded.joints.len());
     report.device(&scenario.nominal.device);
-    overrides(&mut report, file)?;
+    overrides(&mut report, &keys_given(file, OVERRIDES)?);
     report.fact(
         "servo",
         format!(
@@ -294,12 +297,10 @@ fn estimated(report: &mut Report, arm: Option<&EstimatedArm>) -> Result<(), AppE
 }
 
 /// Changes of the scenario to the device's model.
-pub(super) fn overrides(report: &mut Report, file: &Path) -> Result<(), AppError> {
-    let keys = keys_given(file, "device.override")?;
+pub(super) fn overrides(report: &mut Report, keys: &[String]) {
     if !keys.is_empty() {
         report.fact("", format!("changed by the scenario: {}", keys.join(", ")));
     }
-    Ok(())
 }
 
 fn part(report: &mut Report, workpiece: &WorkpieceScenario, edge: &EdgeCurve) {

@@ -22,6 +22,11 @@ const MODELS: [&str; 5] = ["measured", "believed", "tolerated", "improved", "lef
 
 /// Writes the recordings beside the models.
 pub(super) fn write_recordings(path: &Path, comparison: &Comparison) -> Result<(), RecordingError> {
+    write_long(path, &columns_of_recordings(comparison))
+}
+
+/// The recordings beside the models as a long table.
+pub(super) fn columns_of_recordings(comparison: &Comparison) -> Vec<(String, LongColumn)> {
     let recordings = &comparison.recordings;
     let each = |text: &dyn Fn(&Compared) -> &str| -> LongColumn {
         let rows = recordings
@@ -61,7 +66,7 @@ pub(super) fn write_recordings(path: &Path, comparison: &Comparison) -> Result<(
             ));
         }
     }
-    write_long(path, &columns)
+    columns
 }
 
 fn of_model(channel: &ComparedChannel, place: usize) -> &[f64] {

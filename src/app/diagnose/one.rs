@@ -1,6 +1,6 @@
 //! One case: rig.toml and recordings in, diagnosis.json, prediction.csv, improved.toml, account.txt and unlisted.svg out.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::super::error::AppError;
 use super::super::files::{DIAGNOSIS, OutputFolder, OverwritePolicy, is_same};
@@ -40,11 +40,11 @@ enum Subject {
     Postures(Box<PosturesCase>),
 }
 
-/// A case that can be diagnosed, and a folder that its files can go to.
+/// A case that can be diagnosed, and a folder that its files can go to, where they are to be written.
 pub(super) struct Prepared {
     subject: Subject,
     settings: Settings,
-    folder: OutputFolder,
+    folder: Option<OutputFolder>,
     /// What is asked for besides the files, as the seal has it.
     asked: String,
 }
@@ -65,6 +65,21 @@ impl Subject {
     }
 }
 
+/// Makes the folder for the files of a case's diagnosis.
+fn prepare(case: &Path, out: &Path, policy: OverwritePolicy) -> Result<OutputFolder, AppError> {
+    if policy == OverwritePolicy::Refuse && out.join(DIAGNOSIS).exists() {
+        return Err(AppError::Diagnosed {
+            folder: out.display().to_string(),
+        });
+    }
+    if is_same(case, out) {
+        return Err(AppError::AmongInputs {
+            folder: out.display().to_string(),
+        });
+    }
+    OutputFolder::prepare(out, &NAMES, policy)
+}
+
 /// A diagnosis that stands, with diagnosis.json.
 pub(super) struct Existing {
     /// The finding.
@@ -78,8 +93,7 @@ impl Prepared {
     pub(super) fn new(
         folder: &Path,
         (cell, tried, limit): (Option<&LoadedCell>, Option<LawText>, EffortLimit),
-        out: &Path,
-        policy: OverwritePolicy,
+        out: Option<(&Path, OverwritePolicy)>,
     ) -> Result<Self, AppError> {
         let is_table = cell.is_none() && is_removal_table(&folder.join(RIG));
         let is_other = folder.join(RIG).is_file() || is_arm_case(folder);
@@ -105,30 +119,23 @@ impl Prepared {
             }
             Subject::Recordings(Box::new(case))
         };
-        if policy == OverwritePolicy::Refuse && out.join(DIAGNOSIS).exists() {
-            return Err(AppError::Diagnosed {
-                folder: out.display().to_string(),
-            });
-        }
-        if is_same(folder, out) {
-            return Err(AppError::AmongInputs {
-                folder: out.display().to_string(),
-            });
-        }
+        let prepared = out.map(|(out, policy)| prepare(folder, out, policy));
         Ok(Self {
             subject,
             settings: Settings {
                 limit,
                 ..Settings::default()
             },
-            folder: OutputFolder::prepare(out, &NAMES, policy)?,
+            folder: prepared.transpose()?,
             asked,
         })
     }
 
     /// The diagnosis that stands complete, of the same files and settings; or why what stands is none. Neither where nothing stands.
     pub(super) fn existing(&self) -> Result<Option<Result<Existing, String>>, AppError> {
-        let folder = self.folder.path();
+        let Some(folder) = self.folder.as_ref().map(OutputFolder::path) else {
+            return Ok(None);
+        };
         let document = match read_sealed(&folder.join(DIAGNOSIS), &self.asked) {
             Ok(document) => document,
             Err(SealError::Absent) => return Ok(None),
@@ -159,6 +166,11 @@ impl Prepared {
         }
     }
 
+    /// The improved file as it is called once it stands; none where nothing is written.
+    fn improved_file(&self) -> Option<PathBuf> {
+        Some(self.folder.as_ref()?.path().join(IMPROVED))
+    }
+
     fn of_table(&self, case: &RemovalCase) -> Result<Finished, AppError> {
         let RemovalDiagnosed {
             mut answer,
@@ -166,8 +178,8 @@ impl Prepared {
             improved,
             prediction,
         } = case.diagnose()?;
-        if !diagnosis.effects.is_empty() {
-            let file = word(&self.folder.path().join(IMPROVED));
+        if let (Some(file), false) = (self.improved_file(), diagnosis.effects.is_empty()) {
+            let file = word(&file);
             let how = format!(
                 "`idc predict {file} TABLE.csv` predicts the runs of another table with what was found."
             );
@@ -176,15 +188,15 @@ impl Prepared {
         let picture = removal_picture::picture(&diagnosis, case.file.is_feed)?;
         let outputs = Outputs {
             answer,
-            improved: &improved,
+            improved,
             prediction: prediction.as_deref(),
             beside: &[],
             picture: None,
             fit_picture: Some(&picture),
             scene: None,
-            comparison: &Comparison::default(),
+            comparison: Comparison::default(),
         };
-        outputs.write(&self.folder, &self.asked)
+        outputs.write(self.folder.as_ref(), &self.asked)
     }
 
     fn of_postures(&self, case: &PosturesCase) -> Result<Finished, AppError> {
@@ -194,23 +206,25 @@ impl Prepared {
             prediction,
             left,
         } = case.diagnose()?;
-        let file = word(&self.folder.path().join(IMPROVED));
-        let how = format!(
-            "`idc predict {file} TABLE.csv` predicts what the sensor reads in other postures, with what was found."
-        );
-        answer.details.account.add(SectionKind::HowToRun, vec![how]);
+        if let Some(file) = self.improved_file() {
+            let file = word(&file);
+            let how = format!(
+                "`idc predict {file} TABLE.csv` predicts what the sensor reads in other postures, with what was found."
+            );
+            answer.details.account.add(SectionKind::HowToRun, vec![how]);
+        }
         let picture = answer.kept("fit.svg", postures_picture::picture(&left));
         let outputs = Outputs {
             answer,
-            improved: &improved,
+            improved,
             prediction: prediction.as_deref(),
             beside: &[],
             picture: None,
             fit_picture: picture.as_deref(),
             scene: None,
-            comparison: &Comparison::default(),
+            comparison: Comparison::default(),
         };
-        outputs.write(&self.folder, &self.asked)
+        outputs.write(self.folder.as_ref(), &self.asked)
     }
 
     fn of_recordings(
@@ -235,27 +249,27 @@ impl Prepared {
         if let Some(diagnosis) = &diagnosis {
             shape = answer.kept("unlisted.svg", picture(diagnosis)).flatten();
             fit = fit_picture::picture(diagnosis);
-            if !diagnosis.best().finds_nothing() {
-                let how = how_to_run(case.cell(), &self.folder.path().join(IMPROVED));
+            if let (Some(file), false) = (self.improved_file(), diagnosis.best().finds_nothing()) {
+                let how = how_to_run(case.cell(), &file);
                 answer.details.account.add(SectionKind::HowToRun, vec![how]);
             }
         }
-        if case.is_of_arm() {
-            let how = how_to_go_on_with_arm(&answer, &self.folder.path().join(IMPROVED));
+        if let (Some(file), true) = (self.improved_file(), case.is_of_arm()) {
+            let how = how_to_go_on_with_arm(&answer, &file);
             answer.details.account.add(SectionKind::HowToRun, how);
         }
         let fit = answer.kept("fit.svg", fit).flatten();
         let outputs = Outputs {
             answer,
-            improved: &improved,
+            improved,
             prediction: prediction.as_deref(),
             beside: &beside,
             picture: shape.as_deref(),
             fit_picture: fit.as_deref(),
             scene: scene.flatten(),
-            comparison: &comparison,
+            comparison,
         };
-        outputs.write(&self.folder, &self.asked)
+        outputs.write(self.folder.as_ref(), &self.asked)
     }
 }
 

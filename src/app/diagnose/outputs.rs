@@ -9,7 +9,7 @@ use super::comparison_files::{write_balances, write_recordings};
 use crate::case::{DRIVES, IDENTIFIED, IMPROVED, IMPROVED_ARM};
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::difference::comparison::Comparison;
-use crate::document::{Style, html, text};
+use crate::document::{Document, Style, html, text};
 use crate::recording::atomic::write_text;
 use crate::recording::seal::{hashes, sealed};
 use crate::report;
@@ -53,7 +53,7 @@ pub(super) struct Outputs<'a> {
     /// The finding.
     pub answer: Answer,
     /// improved.toml.
-    pub improved: &'a str,
+    pub improved: String,
     /// prediction.csv.
     pub prediction: Option<&'a str>,
     /// drives.csv, identified.urdf, improved_arm.toml.
@@ -63,12 +63,12 @@ pub(super) struct Outputs<'a> {
     /// fit.svg.
     pub fit_picture: Option<&'a str>,
     /// Recordings beside models.
-    pub comparison: &'a Comparison,
+    pub comparison: Comparison,
     /// Scene of a cell.
     pub scene: Option<Scene>,
 }
 
-/// A case that was diagnosed; its files are written.
+/// A case that was diagnosed; its files are written, where there is a folder for them.
 pub(super) struct Finished {
     /// The finding.
     pub answer: Answer,
@@ -76,6 +76,10 @@ pub(super) struct Finished {
     pub document: String,
     /// account.txt.
     pub account: String,
+    /// improved.toml.
+    pub improved: String,
+    /// Recordings beside models.
+    pub comparison: Comparison,
     /// Names of the files written.
     pub names: Vec<&'static str>,
 }
@@ -84,13 +88,33 @@ impl Outputs<'_> {
     /// Writes all of it, sealed as what was asked for.
     pub(super) fn write(
         mut self,
-        folder: &OutputFolder,
+        folder: Option<&OutputFolder>,
         asked: &str,
     ) -> Result<Finished, AppError> {
         self.answer.take_out_what_is_no_number();
         let mut document = self.answer.text()?;
-        let report = report::diagnosis(&self.answer, self.comparison);
+        let report = report::diagnosis(&self.answer, &self.comparison);
         let account = text(&report, Style::Plain);
+        let names = match folder {
+            Some(folder) => self.write_into(folder, asked, (&mut document, &account, &report))?,
+            None => Vec::new(),
+        };
+        Ok(Finished {
+            answer: self.answer,
+            document,
+            account,
+            improved: self.improved,
+            comparison: self.comparison,
+            names,
+        })
+    }
+
+    fn write_into(
+        &self,
+        folder: &OutputFolder,
+        asked: &str,
+        (document, account, report): (&mut String, &str, &Document<'_>),
+    ) -> Result<Vec<&'static str>, AppError> {
         let beside = |wanted: &str| {
             let own = self.beside.iter().find(|(name, _)| *name == wanted);
             own.map(|(_, text)| text.as_str())
@@ -103,34 +127,29 @@ impl Outputs<'_> {
             (PICTURE, self.picture),
             (FIT_PICTURE, self.fit_picture),
         ];
-        let texts = [(ACCOUNT, account.as_str()), (IMPROVED, self.improved)];
+        let texts = [(ACCOUNT, account), (IMPROVED, self.improved.as_str())];
         let optional = optional
             .into_iter()
             .filter_map(|(name, text)| Some((name, text?)));
         let texts: Vec<(&'static str, &str)> = texts.into_iter().chain(optional).collect();
-        let names = folder.write_with(&NAMES, |unfinished| {
+        folder.write_with(&NAMES, |unfinished| {
             for (name, text) in &texts {
                 write_text(&unfinished.join(name), text)?;
             }
-            write_recordings(&unfinished.join(COMPARISON), self.comparison)?;
-            write_balances(&unfinished.join(BALANCE), self.comparison)?;
-            write_text(&unfinished.join(REPORT), &html(&report))?;
-            let screen = board(&self.answer, self.comparison, self.scene, &report);
+            write_recordings(&unfinished.join(COMPARISON), &self.comparison)?;
+            write_balances(&unfinished.join(BALANCE), &self.comparison)?;
+            write_text(&unfinished.join(REPORT), &html(report))?;
+            let scene = self.scene.clone();
+            let screen = board(&self.answer, &self.comparison, scene, report);
             write_board(&unfinished.join(BOARD), &screen)?;
             let own = SEALED.into_iter();
             let own = own.filter(|name| texts.iter().any(|(written, _)| written == name));
-            document = sealed(&document, asked, hashes(unfinished, own)?);
-            write_text(&unfinished.join(DIAGNOSIS), &document)?;
+            *document = sealed(document, asked, hashes(unfinished, own)?);
+            write_text(&unfinished.join(DIAGNOSIS), document)?;
             let names = texts.iter().map(|(name, _)| *name);
             Ok(names
                 .chain([COMPARISON, BALANCE, REPORT, BOARD, DIAGNOSIS])
                 .collect())
-        })?;
-        Ok(Finished {
-            answer: self.answer,
-            document,
-            account,
-            names,
         })
     }
 }

@@ -17,12 +17,13 @@ use super::cell_run::{Listener, run_observed};
 use super::source::Source;
 use crate::cell::Cell;
 use crate::document::{Style, html, markdown, text};
+use crate::recording::Recording;
 use crate::recording::csv::EdgeProfile;
 use crate::recording::provenance::Provenance;
 use crate::recording::seal::sealed;
 use crate::report::{RunReport, Sketches, drives};
 use crate::rig::Rig;
-use crate::run::{Job, RunResult};
+use crate::run::{Finished, FinishedBench, FinishedCell, Job, RunOrigin, RunResult};
 use crate::scenario::{BenchScenario, Scenario, files_of_cell};
 use crate::scene::Scene;
 use crate::scene::finished_edge::FinishedEdge;
@@ -43,6 +44,8 @@ pub(super) struct RunOptions {
 
 /// A run that has ended, its files written.
 pub(super) struct RunOutcome {
+    /// What was simulated.
+    pub finished: Finished,
     /// Its numbers.
     pub result: RunResult,
     /// Content of summary.json.
@@ -121,6 +124,74 @@ impl Job {
     }
 }
 
+/// What the page of a run is made of, beside its recording.
+pub(super) struct Parts {
+    /// Its numbers.
+    pub result: RunResult,
+    /// It in space.
+    pub scene: Scene,
+    /// Its pictures.
+    pub sketches: Sketches,
+}
+
+impl Parts {
+    /// Those of a cell's run.
+    pub(super) fn of_cell(
+        cell: &Cell,
+        finished: &FinishedCell,
+        origin: RunOrigin,
+    ) -> Result<Self, AppError> {
+        let bounds = finished.bounds(cell)?;
+        let course = edge_course(cell, &finished.recording)?;
+        let worked = (finished.edge.as_ref()).map(|edge| FinishedEdge {
+            course,
+            ..finished_edge(cell, edge)
+        });
+        let scene = Scene {
+            finished_edge: worked,
+            ..scene_of(cell, &finished.recording, &finished.frames)?
+        };
+        let sketches = Sketches {
+            lean: Some(across_the_edge(cell)),
+            ..sketches(&scene, &finished.recording)
+        };
+        Ok(Self {
+            result: RunResult::of_cell(cell, finished, bounds, origin),
+            scene,
+            sketches,
+        })
+    }
+
+    /// Those of a bench's run.
+    pub(super) fn of_bench(
+        rig: &Rig,
+        finished: &FinishedBench,
+        origin: RunOrigin,
+    ) -> Result<Self, AppError> {
+        let bounds = finished.bounds(rig)?;
+        let scene = bench_picture::scene_of(&rig.scenario, &finished.recording)?;
+        Ok(Self {
+            result: RunResult::of_bench(rig, finished, bounds, origin),
+            sketches: sketches(&scene, &finished.recording),
+            scene,
+        })
+    }
+
+    /// What is said of it.
+    pub(super) fn report<'a>(
+        &'a self,
+        recording: &'a Recording,
+        profile: Option<&'a EdgeProfile>,
+    ) -> RunReport<'a> {
+        RunReport {
+            result: &self.result,
+            recording,
+            sketches: &self.sketches,
+            profile,
+        }
+    }
+}
+
 fn perform_cell(
     job: &Job,
     cell: &Cell,
@@ -142,37 +213,19 @@ fn perform_cell(
         let of_stream = streaming.iter().map(StreamingRecording::listener);
         let listeners = watching.into_iter().chain(of_stream).collect();
         let finished = run_observed(cell, progress, listeners)?;
-        let bounds = finished.bounds(cell)?;
-        let result = RunResult::of_cell(cell, &finished, bounds, source.origin(origin));
-        let course = edge_course(cell, &finished.recording)?;
-        let worked = (finished.edge.as_ref()).map(|edge| FinishedEdge {
-            course,
-            ..finished_edge(cell, edge)
-        });
-        let scene = Scene {
-            finished_edge: worked,
-            ..scene_of(cell, &finished.recording, &finished.frames)?
-        };
-        let sketches = Sketches {
-            lean: Some(across_the_edge(cell)),
-            ..sketches(&scene, &finished.recording)
-        };
-        let report = RunReport {
-            result: &result,
-            recording: &finished.recording,
-            sketches: &sketches,
-            profile: finished.edge.as_ref(),
-        };
+        let parts = Parts::of_cell(cell, &finished, source.origin(origin))?;
+        let report = parts.report(&finished.recording, finished.edge.as_ref());
         let report = report.document();
         let summary = markdown(&report);
+        let scene = &parts.scene;
         let (page, encoded) = rayon::join(
             || html(&report),
-            || streaming.map(|streaming| streaming.end(&finished.recording, &scene, &summary)),
+            || streaming.map(|streaming| streaming.end(&finished.recording, scene, &summary)),
         );
         let encoded = encoded.transpose()?;
-        let document = document(&result)?;
+        let document = document(&parts.result)?;
         let names = folder.write(RunOutput {
-            title: &result.title,
+            title: &parts.result.title,
             recording: &finished.recording,
             picture: encoded
                 .map(|encoded| -> Picture<'_> { Box::new(move |path| encoded.write(path)) }),
@@ -181,18 +234,18 @@ fn perform_cell(
             edge_profile: finished.edge.as_ref().map(EdgeProfile::text).as_deref(),
             figures: None,
             varied: source.copy(),
-            sketches: &sketches,
+            sketches: &parts.sketches,
             report: &page,
         })?;
-        Ok(RunOutcome {
-            table: text(&report, run_options.style),
-            messages: messages(&result),
-            code: code(&result),
-            result,
-            document,
+        let table = text(&report, run_options.style);
+        let finished = Finished::Cell(Box::new(finished));
+        Ok(RunOutcome::new(
+            finished,
+            parts,
+            (document, table),
             names,
-            shown: (scene, summary),
-        })
+            summary,
+        ))
     })
 }
 
@@ -207,24 +260,16 @@ fn perform_bench(
     let (origin, _) = job.provenance(source)?;
     let finished = bench::run_watched(rig, progress, watch)?;
     let scenario = &rig.scenario;
-    let bounds = finished.bounds(rig)?;
-    let result = RunResult::of_bench(rig, &finished, bounds, source.origin(origin));
-    let scene = bench_picture::scene_of(scenario, &finished.recording)?;
-    let sketches = sketches(&scene, &finished.recording);
-    let report = RunReport {
-        result: &result,
-        recording: &finished.recording,
-        sketches: &sketches,
-        profile: None,
-    };
+    let parts = Parts::of_bench(rig, &finished, source.origin(origin))?;
+    let report = parts.report(&finished.recording, None);
     let report = report.document();
-    let document = document(&result)?;
+    let document = document(&parts.result)?;
     let options = RerunOptions {
         summary_markdown: markdown(&report),
         opening: run_options.opening,
         ..RerunOptions::default()
     };
-    let picture = |path: &Path| write_rrd(path, &finished.recording, &scene, &options);
+    let picture = |path: &Path| write_rrd(path, &finished.recording, &parts.scene, &options);
     let names = folder.write(RunOutput {
         title: &scenario.title,
         recording: &finished.recording,
@@ -234,18 +279,40 @@ fn perform_bench(
         edge_profile: None,
         figures: Some(&bench_figures::figures(scenario, &finished.recording)?),
         varied: source.copy(),
-        sketches: &sketches,
+        sketches: &parts.sketches,
         report: &html(&report),
     })?;
-    Ok(RunOutcome {
-        table: text(&report, run_options.style),
-        messages: messages(&result),
-        code: code(&result),
-        result,
-        document,
+    let table = text(&report, run_options.style);
+    let summary = options.summary_markdown;
+    let finished = Finished::Bench(Box::new(finished));
+    Ok(RunOutcome::new(
+        finished,
+        parts,
+        (document, table),
         names,
-        shown: (scene, options.summary_markdown),
-    })
+        summary,
+    ))
+}
+
+impl RunOutcome {
+    fn new(
+        finished: Finished,
+        parts: Parts,
+        (document, table): (String, String),
+        names: Vec<&'static str>,
+        summary: String,
+    ) -> Self {
+        Self {
+            finished,
+            messages: messages(&parts.result),
+            code: code(&parts.result),
+            result: parts.result,
+            document,
+            table,
+            names,
+            shown: (parts.scene, summary),
+        }
+    }
 }
 
 /// Names of the arm's joints, base first.

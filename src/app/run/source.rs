@@ -15,6 +15,8 @@ use crate::scenario::{KeyValue, ScenarioError, ScenarioTemplate};
 pub(in super::super) struct Source {
     /// Its file.
     pub name: String,
+    /// Whether it was made of no file.
+    is_text: bool,
     varied: Option<Varied>,
 }
 
@@ -33,6 +35,7 @@ impl Source {
     pub(super) fn file(path: &Path) -> Self {
         Self {
             name: path.display().to_string(),
+            is_text: false,
             varied: None,
         }
     }
@@ -47,9 +50,31 @@ impl Source {
         let all: Vec<KeyValue> = edits.iter().cloned().chain(title).collect();
         Ok(Self {
             name: folder.join(VARIED).display().to_string(),
+            is_text: template.is_text(),
             varied: Some(Varied {
                 text: template.text(&all)?,
                 copy: template.text_in(folder, &all)?,
+                edits: edits.to_vec(),
+            }),
+        })
+    }
+
+    /// A file, or none, with other values, or none, of which nothing is written.
+    pub(super) fn in_memory(
+        template: &ScenarioTemplate,
+        edits: &[KeyValue],
+    ) -> Result<Self, ScenarioError> {
+        let name = template.path().display().to_string();
+        if edits.is_empty() && !template.is_text() {
+            return Ok(Self::file(template.path()));
+        }
+        let text = template.text(edits)?;
+        Ok(Self {
+            name,
+            is_text: template.is_text(),
+            varied: Some(Varied {
+                copy: text.clone(),
+                text,
                 edits: edits.to_vec(),
             }),
         })
@@ -89,7 +114,8 @@ impl Source {
         files: &[&PathBuf],
         seed: u64,
     ) -> Result<(Provenance, String), AppError> {
-        let mut origin = provenance(files, seed)?;
+        let existing = &files[usize::from(self.is_text)..];
+        let mut origin = provenance(existing, seed)?;
         let Some(varied) = &self.varied else {
             let content = origin.content();
             return Ok((origin, content));

@@ -194,7 +194,7 @@ fn finish(
         write_table(plan, sweep.template.is_bench(), &table)?;
         let swept = Swept::of(sweep, (&program, &files), &|wanted| columns(&table, wanted))?;
         let document = serde_json::to_string_pretty(&swept)?;
-        let report = page::document(&swept, &table)?;
+        let report = page::document(&swept, &|wanted| columns(&table, wanted))?;
         write_text(&unfinished.join(REPORT), &html(&report))?;
         write_text(&unfinished.join(SWEEP), &document)?;
         said = (document, text(&report, Style::Plain));

@@ -1,9 +1,7 @@
 //! The page of a sweep.
 
-use std::path::Path;
-
 use super::super::error::AppError;
-use super::table::{RUNS, columns};
+use super::table::RUNS;
 use crate::document::{
     Block, Cell, Column, Document, Horizontal, Panel, Role, Section, Series, Stroke, Table, Tone,
 };
@@ -13,7 +11,7 @@ use crate::quantity::{UNKNOWN, column, number};
 use crate::recording::long_column::LongColumn;
 use crate::report::sources;
 use crate::stats::quantiles;
-use crate::vary::{MetricOfRuns, QUANTILES, Swept, percent, short};
+use crate::vary::{MetricOfRuns, QUANTILES, ReadColumns, Swept, percent, short};
 
 /// Metrics that are drawn.
 const DRAWN: usize = 4;
@@ -25,14 +23,13 @@ const STEPS: usize = 100;
 /// The document of a sweep, of its result and the table beside it.
 pub(in super::super) fn document(
     swept: &Swept,
-    table: &Path,
+    columns: ReadColumns<'_>,
 ) -> Result<Document<'static>, AppError> {
-    debug_assert!(table.ends_with(RUNS));
     let clean = !swept.codes.keys().any(|code| *code > 0);
     let stopped = swept.stopped.iter();
     let stopped = stopped.map(|(run, reason)| format!("Run {run}: {reason}"));
     let mut sections = vec![drivers(swept)];
-    sections.extend(pictures(swept, table)?.map(Section::appendix));
+    sections.extend(pictures(swept, columns)?.map(Section::appendix));
     sections.push(distribution(swept).appendix());
     sections.push(varied(swept));
     sections.push(sources(&swept.program, &swept.files));
@@ -198,14 +195,14 @@ fn varied(swept: &Swept) -> Section<'static> {
 }
 
 /// Numbers over what drives them most, and how they are distributed.
-fn pictures(swept: &Swept, table: &Path) -> Result<Option<Section<'static>>, AppError> {
+fn pictures(swept: &Swept, columns: ReadColumns<'_>) -> Result<Option<Section<'static>>, AppError> {
     let mut blocks = Vec::new();
     for (label, metric) in swept.most_important().take(DRAWN) {
         // The first is the largest share; of a number that nothing drives for sure, the run's own scatter is drawn over it all the same.
         let first = metric.sure().next().or(metric.drivers.first());
         let key = first.map(|driver| driver.key.clone());
         let wanted: Vec<&str> = key.iter().map(String::as_str).chain([label.key]).collect();
-        let mut read = columns(table, &wanted)?;
+        let mut read = columns(&wanted)?;
         let Some(LongColumn::Numbers(values)) = read.remove(label.key) else {
             continue;
         };

@@ -60,7 +60,7 @@ impl Sweep {
         let mut files = Files::new(folder);
         let first = self.template.with(&self.edits(&self.points.at(0)));
         let base = first.or_else(|_| self.with(&[]))?;
-        let shared = files.of(&base)?;
+        let shared = files.of(&base, self.template.is_text())?;
         let keys: Vec<String> = (self.points.variables().iter())
             .map(|variable| variable.key.clone())
             .collect();
@@ -93,7 +93,10 @@ impl Sweep {
                 None if texts.is_empty() => shared.clone(),
                 None => {
                     let scenario = self.template.with(&self.edits(&values));
-                    let read = scenario.map_or_else(|_| Ok(shared.clone()), |s| files.of(&s))?;
+                    let read = scenario.map_or_else(
+                        |_| Ok(shared.clone()),
+                        |s| files.of(&s, self.template.is_text()),
+                    )?;
                     known.entry(own).or_insert(read).clone()
                 }
             };
@@ -142,10 +145,11 @@ impl Files {
         }
     }
 
-    /// All that a scenario reads, its own file first; meshes of the arm as well.
+    /// All that a scenario reads, its own file first, where it stands in one; meshes of the arm as well.
     pub(in super::super) fn of(
         &mut self,
         scenario: &AnyScenario,
+        is_text: bool,
     ) -> Result<Vec<SourceFile>, AppError> {
         let paths: Vec<PathBuf> = match scenario {
             AnyScenario::Cell(cell) => {
@@ -163,7 +167,9 @@ impl Files {
             }
             AnyScenario::Bench(bench) => vec![bench.path.clone(), bench.device.model.clone()],
         };
-        paths.iter().map(|path| self.one(path)).collect()
+        // A scenario that stands in no file comes first.
+        let existing = paths[usize::from(is_text)..].iter();
+        existing.map(|path| self.one(path)).collect()
     }
 
     /// One file.

@@ -16,18 +16,58 @@ use crate::tasks::{Plan, Store};
 pub(in super::super) const RUNS: &str = "runs.parquet";
 /// What it says.
 pub(in super::super) const SWEEP: &str = "vary.json";
-/// Columns before the keys.
+/// Columns before the keys, and whether they hold names.
 const OWN: [(&str, bool); 4] = [
     ("run", false),
     ("id", true),
     ("code", false),
     ("reason", true),
 ];
+
+/// Columns of a table of runs, and whether they hold names: its own, a key each, a number each.
+pub(super) fn layout<'a>(
+    own: &[(&'a str, bool)],
+    keys: impl Iterator<Item = (&'a str, bool)>,
+    is_bench: bool,
+) -> Vec<(&'a str, bool)> {
+    let numbers = metric_names(is_bench).into_iter().map(|name| (name, false));
+    own.iter().copied().chain(keys).chain(numbers).collect()
+}
+
+/// Columns without a row.
+pub(super) fn empty(layout: &[(&str, bool)]) -> Vec<LongColumn> {
+    let column = |(_, names): &(&str, bool)| match names {
+        true => LongColumn::Names(Vec::new()),
+        false => LongColumn::Numbers(Vec::new()),
+    };
+    layout.iter().map(column).collect()
+}
+
+/// Adds a run: what stands before its numbers as text, and these.
+pub(super) fn add(
+    columns: &mut [LongColumn],
+    texts: impl Iterator<Item = String>,
+    metrics: &[Option<f64>],
+) {
+    let mut places = columns.iter_mut();
+    for (text, column) in texts.zip(&mut places) {
+        match column {
+            LongColumn::Names(names) => names.push(text),
+            LongColumn::Numbers(numbers) => numbers.push(text.parse().unwrap_or(f64::NAN)),
+        }
+    }
+    for (at, column) in places.enumerate() {
+        let value = metrics.get(at).copied().flatten();
+        if let LongColumn::Numbers(numbers) = column {
+            numbers.push(value.unwrap_or(f64::NAN));
+        }
+    }
+}
 /// Runs of a group: what is held at a time.
 const GROUP: usize = 4096;
 
 /// Columns of a table by their names.
-pub(super) fn columns(
+pub(in super::super) fn columns(
     table: &Path,
     wanted: &[&str],
 ) -> Result<BTreeMap<String, LongColumn>, RecordingError> {
@@ -41,23 +81,12 @@ pub(super) fn write_table(plan: &Path, is_bench: bool, table: &Path) -> Result<(
     let opened = Plan::open(plan)?;
     let shared: Shared = serde_json::from_value(opened.head.work.clone())?;
     let store = Store::of(plan);
-    let metrics = metric_names(is_bench);
-    let keys = shared
-        .keys
-        .iter()
-        .map(String::as_str)
-        .zip(texts.iter().copied());
-    let numbers = metrics.iter().map(|name| (*name, false));
-    let columns: Vec<(&str, bool)> = OWN.into_iter().chain(keys).chain(numbers).collect();
+    let keys = shared.keys.iter().map(String::as_str);
+    let columns = layout(&OWN, keys.zip(texts.iter().copied()), is_bench);
     let mut tasks = opened;
     let mut run = 0;
     write_groups(table, &columns, || {
-        let mut group: Vec<LongColumn> = (columns.iter())
-            .map(|(_, names)| match names {
-                true => LongColumn::Names(Vec::new()),
-                false => LongColumn::Numbers(Vec::new()),
-            })
-            .collect();
+        let mut group = empty(&columns);
         let mut rows = 0;
         while rows < GROUP
             && let Some(task) = tasks.next()
@@ -73,20 +102,7 @@ pub(super) fn write_table(plan: &Path, is_bench: bool, table: &Path) -> Result<(
                 result.code.to_string(),
                 result.reason,
             ];
-            let texts = own.into_iter().chain(values);
-            let mut places = group.iter_mut();
-            for (text, column) in texts.zip(&mut places) {
-                match column {
-                    LongColumn::Names(names) => names.push(text),
-                    LongColumn::Numbers(numbers) => numbers.push(text.parse().unwrap_or(f64::NAN)),
-                }
-            }
-            for (at, column) in places.enumerate() {
-                let value = result.metrics.get(at).copied().flatten();
-                if let LongColumn::Numbers(numbers) = column {
-                    numbers.push(value.unwrap_or(f64::NAN));
-                }
-            }
+            add(&mut group, own.into_iter().chain(values), &result.metrics);
         }
         Ok((rows > 0).then_some(group))
     })

@@ -52,17 +52,22 @@ impl Worker {
     /// Does a run, and puts its numbers in their place.
     pub(in super::super) fn perform(&self, task: &Task, store: &Store) -> Result<(), TaskError> {
         let values: Vec<String> = serde_json::from_value(task.work.clone()).unwrap_or_default();
-        let numbers = match self.template.with(&self.shared.edits(&values)) {
-            Ok(scenario) => numbers(scenario),
-            // As an edge that would end before it starts.
-            Err(error) => Numbers {
-                code: ExitCode::BadInput as u8,
-                reason: error.to_string(),
-                metrics: Vec::new(),
-            },
-        };
+        let numbers = numbers_of(&self.template, &self.shared.edits(&values));
         let text = serde_json::to_string(&numbers).unwrap_or_default();
         Ok(store.put(&task.id, &[], &text)?)
+    }
+}
+
+/// The numbers of a run with these values; what refuses it is a result as well.
+pub(super) fn numbers_of(template: &ScenarioTemplate, edits: &[KeyValue]) -> Numbers {
+    match template.with(edits) {
+        Ok(scenario) => numbers(scenario),
+        // As an edge that would end before it starts.
+        Err(error) => Numbers {
+            code: ExitCode::BadInput as u8,
+            reason: error.to_string(),
+            metrics: Vec::new(),
+        },
     }
 }
 

@@ -8,6 +8,7 @@ use crate::cell::Cell;
 use crate::collision::ClearanceWatch;
 use crate::control::servo::{Servo, ServoParameters};
 use crate::control::transmission::Motor;
+use crate::physics::command_lag::CommandLag;
 
 /// Inertia of each of the arm's axes about itself, the others held, with the slide where it starts [kg m2].
 pub(super) fn inertias(cell: &Cell, positions: &[f64]) -> Vec<f64> {
@@ -15,6 +16,15 @@ pub(super) fn inertias(cell: &Cell, positions: &[f64]) -> Vec<f64> {
     let mut masses = nalgebra::DMatrix::zeros(count, count);
     mass_matrix(&cell.setup.arm_with_slide, positions, &mut masses);
     (0..count - 1).map(|i| masses[(i, i)]).collect()
+}
+
+/// Response of each axis's drive to its command, where a bandwidth of the drives is finite [Hz].
+pub(super) fn lags(bandwidth: f64, positions: &[f64]) -> Vec<CommandLag> {
+    let lag = |start: &f64| CommandLag::at_rest(bandwidth, *start);
+    match bandwidth.is_finite() {
+        true => positions.iter().map(lag).collect(),
+        false => Vec::new(),
+    }
 }
 
 /// The servo of all axes, each about its own inertia [kg m2].
