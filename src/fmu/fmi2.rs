@@ -39,7 +39,7 @@ extern "C" fn fmi2GetVersion() -> *const c_char {
 
 #[unsafe(no_mangle)]
 extern "C" fn fmi2SetDebugLogging(component: *mut c_void) -> Status {
-    // Errors are told anyway, and there is nothing else to tell.
+    // Errors are reported anyway, and there is nothing else to report.
     with(component, |_| Ok(()))
 }
 

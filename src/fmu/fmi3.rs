@@ -22,7 +22,7 @@ extern "C" fn fmi3GetVersion() -> *const c_char {
 
 #[unsafe(no_mangle)]
 extern "C" fn fmi3SetDebugLogging(component: *mut c_void) -> Status {
-    // Errors are told anyway, and there is nothing else to tell.
+    // Errors are reported anyway, and there is nothing else to report.
     with(component, |_| Ok(()))
 }
 
@@ -226,4 +226,184 @@ without! {
     fmi3EnterContinuousTimeMode fmi3CompletedIntegratorStep fmi3SetTime fmi3SetContinuousStates
     fmi3GetContinuousStateDerivatives fmi3GetEventIndicators fmi3GetContinuousStates
     fmi3GetNominalsOfContinuousStates fmi3GetNumberOfEventIndicators fmi3GetNumberOfContinuousStates
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ffi::{CStr, CString};
+    use std::path::Path;
+    use std::ptr::null_mut;
+    use std::sync::Mutex;
+
+    use super::super::interface::{DISCARD, ERROR, OK};
+    use super::super::model::Model;
+    use super::*;
+
+    static MESSAGES: Mutex<Vec<String>> = Mutex::new(Vec::new());
+
+    unsafe extern "C" fn log(
+        _: *mut c_void,
+        status: Status,
+        _: *const c_char,
+        message: *const c_char,
+    ) {
+        // SAFETY: a text of the unit, which ends with a zero.
+        let message = unsafe { CStr::from_ptr(message) }.to_string_lossy();
+        MESSAGES.lock().unwrap().push(format!("{status} {message}"));
+    }
+
+    fn last_message() -> String {
+        MESSAGES.lock().unwrap().last().cloned().unwrap_or_default()
+    }
+
+    fn made(token: &str, resources: &Path) -> *mut c_void {
+        let text = |text: &str| CString::new(text).unwrap();
+        let (token, resources) = (text(token), text(resources.to_str().unwrap()));
+        fmi3InstantiateCoSimulation(
+            c"unit".as_ptr(),
+            token.as_ptr(),
+            resources.as_ptr(),
+            false,
+            false,
+            false,
+            false,
+            null_mut(),
+            0,
+            null_mut(),
+            Some(log),
+            null_mut(),
+        )
+    }
+
+    fn real(unit: *mut c_void, reference: u32) -> f64 {
+        let mut value = f64::NAN;
+        assert_eq!(
+            fmi3GetFloat64(unit, &raw const reference, 1, &raw mut value, 1),
+            OK
+        );
+        value
+    }
+
+    /// As an importer in C goes through a unit, with what it may do wrong.
+    #[test]
+    fn an_importer_in_c_steps_saves_restores_and_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let project = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read_to_string(project.join("scenarios/paper_step.toml")).unwrap();
+        let text = text.replace("../models/device.toml", "device.toml");
+        std::fs::write(folder.path().join("scenario.toml"), text).unwrap();
+        std::fs::copy(
+            project.join("models/device.toml"),
+            folder.path().join("device.toml"),
+        )
+        .unwrap();
+        let model = Model::load(&folder.path().join("scenario.toml")).unwrap();
+        let at = |name: &str| model.variables.iter().position(|v| v.name == name).unwrap() as u32;
+
+        assert!(made("another", folder.path()).is_null());
+        assert!(
+            last_message().starts_with("3 this library"),
+            "{}",
+            last_message()
+        );
+        assert!(made(&model.token, &folder.path().join("absent")).is_null());
+        assert!(
+            last_message().contains("scenario.toml"),
+            "{}",
+            last_message()
+        );
+
+        let unit = made(&model.token, folder.path());
+        assert!(!unit.is_null());
+        let (pressure, force, bore) = (
+            at("set_pressure_gauge_pa"),
+            at("contact_force_n"),
+            at("cylinder.bore_m"),
+        );
+        let set = |reference: u32, value: f64| {
+            fmi3SetFloat64(unit, &raw const reference, 1, &raw const value, 1)
+        };
+        let step = |point: f64, length: f64| {
+            let mut flags = [true; 3];
+            let mut last = f64::NAN;
+            let [event, terminate, early] = &mut flags;
+            let status = fmi3DoStep(
+                unit,
+                point,
+                length,
+                true,
+                event,
+                terminate,
+                early,
+                &raw mut last,
+            );
+            assert_eq!(flags, [false; 3]);
+            (status, last)
+        };
+        assert_eq!(step(0.0, 1e-3), (ERROR, 0.0));
+        assert_eq!(
+            fmi3EnterInitializationMode(unit, false, 0.0, 0.0, false, 0.0),
+            OK
+        );
+        assert_eq!(fmi3ExitInitializationMode(unit), OK);
+        assert_eq!(set(pressure, 1.8e5), OK);
+        assert_eq!(step(0.0, 3.0), (OK, 3.0));
+        // 1.8 bar on two pistons of 32 mm.
+        let expected = 1.8e5 * std::f64::consts::PI * 0.016 * 0.016 * 2.0;
+        assert!(
+            (real(unit, force) / expected - 1.0).abs() < 0.02,
+            "{}",
+            real(unit, force)
+        );
+
+        let mut state = null_mut();
+        assert_eq!(fmi3GetFMUState(unit, &raw mut state), OK);
+        assert_eq!(set(pressure, 0.5e5), OK);
+        assert_eq!(step(3.0, 1.0), (OK, 4.0));
+        let lower = real(unit, force).to_bits();
+        assert_eq!(step(7.0, 1.0), (ERROR, 4.0));
+        assert!(
+            last_message().contains("expected 4 s"),
+            "{}",
+            last_message()
+        );
+        assert_eq!(fmi3SetFMUState(unit, state), OK);
+        assert_eq!(set(pressure, 0.5e5), OK);
+        assert_eq!(step(3.0, 1.0), (OK, 4.0));
+        assert_eq!(real(unit, force).to_bits(), lower);
+        assert_eq!(fmi3FreeFMUState(unit, &raw mut state), OK);
+        assert!(state.is_null());
+        assert_eq!(fmi3SetFMUState(unit, state), ERROR);
+
+        assert_eq!(set(bore, 1.0), DISCARD);
+        assert!(
+            last_message().contains("0.002 to 0.3 m"),
+            "{}",
+            last_message()
+        );
+        assert_eq!(real(unit, bore), 0.032);
+        assert_eq!(fmi3GetString(unit), ERROR);
+        assert!(
+            last_message().contains("fmi3GetString"),
+            "{}",
+            last_message()
+        );
+        let valve = at("valve_extends");
+        let (mut extends, retract) = (false, 0u8);
+        assert_eq!(
+            fmi3GetBoolean(unit, &raw const valve, 1, &raw mut extends, 1),
+            OK
+        );
+        assert!(extends);
+        assert_eq!(
+            fmi3SetBoolean(unit, &raw const valve, 1, &raw const retract, 1),
+            OK
+        );
+        assert_eq!(step(4.0, 1.0), (OK, 5.0));
+        assert_eq!(real(unit, force), 0.0);
+        assert_eq!(fmi3Reset(unit), OK);
+        assert_eq!(real(unit, 0), 0.0);
+        fmi3FreeInstance(unit);
+        assert_eq!(fmi3Terminate(null_mut()), ERROR);
+    }
 }

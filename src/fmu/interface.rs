@@ -19,7 +19,7 @@ pub(super) const OK: Status = 0;
 pub(super) const DISCARD: Status = 2;
 pub(super) const ERROR: Status = 3;
 
-/// An instance with the importer's way to hear of errors.
+/// An instance, and where its errors are reported.
 pub(super) struct Component {
     pub instance: Instance,
     messages: Messages,
@@ -55,8 +55,8 @@ impl Messages {
         }
     }
 
-    /// Tells of an error.
-    fn tell(&self, status: Status, message: &str) {
+    /// Reports an error.
+    fn report(&self, status: Status, message: &str) {
         const CATEGORY: &CStr = c"error";
         let shown = match self.logger {
             // It is taken as a format.
@@ -86,17 +86,17 @@ impl Messages {
         }
     }
 
-    /// Does something that may be refused, and tells why it was.
-    fn told(&self, work: impl FnOnce() -> Result<(), FmuError>) -> Status {
+    /// Does something that may be refused, and reports why it was.
+    fn reported(&self, work: impl FnOnce() -> Result<(), FmuError>) -> Status {
         match catch_unwind(AssertUnwindSafe(work)) {
             Ok(Ok(())) => OK,
             Ok(Err(error)) => {
                 let status = if error.is_discarded() { DISCARD } else { ERROR };
-                self.tell(status, &error.to_string());
+                self.report(status, &error.to_string());
                 status
             }
             Err(_) => {
-                self.tell(ERROR, "a fault of the unit; please report it");
+                self.report(ERROR, "a fault of the unit; please report it");
                 ERROR
             }
         }
@@ -110,7 +110,7 @@ pub(super) fn instantiate(
     resources: Result<PathBuf, FmuError>,
 ) -> *mut c_void {
     let mut made = None;
-    messages.told(|| {
+    messages.reported(|| {
         let model = Model::load(&resources?.join(SCENARIO))?;
         model.check_token(&text(token).unwrap_or_default())?;
         made = Some(Instance::new(Arc::new(model)));
@@ -140,7 +140,7 @@ pub(super) fn with(
         return ERROR;
     };
     let Component { instance, messages } = component;
-    messages.told(|| work(instance))
+    messages.reported(|| work(instance))
 }
 
 /// A function that a unit does not have.
@@ -266,5 +266,31 @@ pub(super) fn resources_of_uri(uri: *const c_char) -> Result<PathBuf, FmuError> 
             given: uri,
             expected: "a URI of scheme file, file:///path/to/resources",
         }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_uri_of_a_file_is_its_path() {
+        let path = |uri: &CStr| resources_of_uri(uri.as_ptr());
+        for (uri, expected) in [
+            (c"file:///tmp/a%20b/resources", "/tmp/a b/resources"),
+            (c"file:/tmp/resources", "/tmp/resources"),
+            (c"file://localhost/tmp/resources/", "/tmp/resources/"),
+        ] {
+            assert_eq!(path(uri).unwrap(), PathBuf::from(expected));
+        }
+        for uri in [
+            c"https://example.org/resources",
+            c"/tmp/resources",
+            c"file:resources",
+        ] {
+            assert!(path(uri).unwrap_err().to_string().contains("file:///"));
+        }
+        assert!(resources_of_uri(std::ptr::null()).is_err());
+        assert!(resources_at(std::ptr::null()).is_err());
     }
 }
