@@ -5,6 +5,7 @@ mod description;
 mod error;
 mod fmu;
 mod program;
+mod version;
 
 use clap::{Args, Subcommand};
 

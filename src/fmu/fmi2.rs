@@ -2,20 +2,20 @@
 //!
 //! Those that a unit does not have declare their first argument alone: on x86-64 Linux the caller passes and removes the others.
 #![allow(unsafe_code)]
+// The standard's arguments and fields.
+#![allow(clippy::too_many_arguments, dead_code)]
 
 use std::ffi::{c_char, c_void};
 
 use super::interface::{
-    ERROR, Logger, Messages, Status, filled, free, free_state, given, instantiate, put,
+    ERROR, Logger, Messages, SecondLog, Status, filled, free, free_state, given, instantiate, put,
     resources_of_uri, restore, save, with, without,
 };
 
 /// Functions of an importer. What is behind the logger is not called: memory is this library's own, and a step ends before it returns.
 #[repr(C)]
-pub struct Callbacks {
-    logger: Option<
-        unsafe extern "C" fn(*mut c_void, *const c_char, Status, *const c_char, *const c_char, ...),
-    >,
+struct Callbacks {
+    logger: Option<SecondLog>,
     allocate: *const c_void,
     free: *const c_void,
     finished: *const c_void,

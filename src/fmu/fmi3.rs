@@ -2,16 +2,15 @@
 //!
 //! Those that a unit does not have declare their first argument alone: on x86-64 Linux the caller passes and removes the others.
 #![allow(unsafe_code)]
+// The standard's arguments.
+#![allow(clippy::too_many_arguments, clippy::fn_params_excessive_bools)]
 
 use std::ffi::{c_char, c_void};
 
 use super::interface::{
-    Logger, Messages, Status, as_many, filled, free, free_state, given, instantiate, put,
+    Logger, Messages, Status, ThirdLog, as_many, filled, free, free_state, given, instantiate, put,
     resources_at, restore, save, with, without,
 };
-
-/// An importer's function for messages.
-type LogMessage = unsafe extern "C" fn(*mut c_void, Status, *const c_char, *const c_char);
 
 // SAFETY, of each `no_mangle` below: the name is the standard's, and no other function of the program has it.
 
@@ -38,7 +37,7 @@ extern "C" fn fmi3InstantiateCoSimulation(
     _intermediate: *const u32,
     _intermediate_count: usize,
     environment: *mut c_void,
-    log: Option<LogMessage>,
+    log: Option<ThirdLog>,
     _update: *const c_void,
 ) -> *mut c_void {
     let logger = log.map_or(Logger::Silent, Logger::Third);

@@ -25,17 +25,21 @@ pub(super) struct Component {
     messages: Messages,
 }
 
+/// An importer's function for messages of version 2: environment, name of the instance, status, category, format and its arguments.
+pub(super) type SecondLog =
+    unsafe extern "C" fn(*mut c_void, *const c_char, Status, *const c_char, *const c_char, ...);
+/// One of version 3: environment, status, category, message.
+pub(super) type ThirdLog = unsafe extern "C" fn(*mut c_void, Status, *const c_char, *const c_char);
+
 /// The importer's function for messages.
 #[derive(Clone, Copy)]
 pub(super) enum Logger {
     /// None.
     Silent,
-    /// Of version 2: environment, name of the instance, status, category, format and its arguments.
-    Second(
-        unsafe extern "C" fn(*mut c_void, *const c_char, Status, *const c_char, *const c_char, ...),
-    ),
-    /// Of version 3: environment, status, category, message.
-    Third(unsafe extern "C" fn(*mut c_void, Status, *const c_char, *const c_char)),
+    /// Of version 2.
+    Second(SecondLog),
+    /// Of version 3.
+    Third(ThirdLog),
 }
 
 /// Where messages go.

@@ -90,7 +90,7 @@ def inputs_of(name, run):
     columns = [("time", time), ("set_pressure_gauge_pa", pressure), ("valve_extends", extends)]
     if "moved" in name:
         rate, since = 2 * math.pi * 0.5, time - 2.0
-        moving = since >= 0
+        moving = (since >= 0).astype(float)
         columns += [
             ("surface_position_m", 0.025 - moving * 0.01 * (1 - np.cos(rate * since))),
             ("surface_speed_m_per_s", -moving * 0.01 * rate * np.sin(rate * since)),
@@ -129,9 +129,11 @@ def open_unit(file):
 
 def give(unit, names, row):
     for name in names:
-        reference, value = [unit.references[name]], [row[name]]
-        real, boolean = (unit.setReal, unit.setBoolean) if unit.version == "2" else (unit.setFloat64, unit.setBoolean)
-        (boolean if name == "valve_extends" else real)(reference, value)
+        reference, real = [unit.references[name]], unit.setReal if unit.version == "2" else unit.setFloat64
+        if name == "valve_extends":
+            unit.setBoolean(reference, [bool(row[name])])
+        else:
+            real(reference, [float(row[name])])
 
 
 def advance(unit, time, step):

@@ -6,7 +6,7 @@ use std::io;
 use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, Event};
 
-use super::fmu::Version;
+use super::version::Version;
 use crate::fmu::{Causality, Kind, Model, Variable};
 use crate::plant::Unit;
 

@@ -51,5 +51,4 @@ pub enum ExportError {
 }
 
 /// How the library is built.
-const BUILD_COMMAND: &str =
-    "cargo rustc --release --lib --no-default-features --features fmu --crate-type cdylib";
+const BUILD_COMMAND: &str = "cargo rustc --release --lib --crate-type cdylib";

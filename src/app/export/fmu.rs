@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use super::super::error::{AppError, ExitCode};
 use super::super::files::{OverwritePolicy, prepare_file};
@@ -11,6 +11,7 @@ use super::super::terminal::shown_path;
 use super::archive::packed;
 use super::description::{IDENTIFIER, description};
 use super::error::ExportError;
+use super::version::Version;
 use crate::flange::FittedFlange;
 use crate::fmu::{Causality, FmuError, MARK, Model, SCENARIO};
 use crate::plant::DeviceParts;
@@ -34,9 +35,8 @@ The unit takes along the shared library of co-simulation units, from beside this
 program, from ../lib, or from --library. Exit codes: 0 written, 2 bad input.
 
 Examples:
-  # Of a bench, for FMI 3.0. (takes minutes)
-  cargo rustc --release --lib --no-default-features --features fmu \\
-      --crate-type cdylib
+  # Of a bench, for FMI 3.0, with its library. (takes minutes)
+  cargo rustc --release --lib --crate-type cdylib
   idc export fmu scenarios/paper_step.toml --out runs/device.fmu
   # Of a diagnosed rig, for FMI 2.0. (takes minutes)
   idc export fmu runs/found/improved.toml --fmi 2 --out runs/found.fmu";
@@ -45,35 +45,6 @@ Examples:
 const DEVICE: &str = "device.toml";
 /// The library as cargo names it.
 const LIBRARY: &str = "libidc_cell.so";
-
-/// Version of FMI.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum Version {
-    /// 2.0.
-    #[value(name = "2")]
-    Two,
-    /// 3.0.
-    #[value(name = "3")]
-    Three,
-}
-
-impl Version {
-    /// As the description has it.
-    pub(super) fn number(self) -> &'static str {
-        match self {
-            Self::Two => "2.0",
-            Self::Three => "3.0",
-        }
-    }
-
-    /// Folder of a library for x86-64 Linux.
-    fn platform(self) -> &'static str {
-        match self {
-            Self::Two => "linux64",
-            Self::Three => "x86_64-linux",
-        }
-    }
-}
 
 #[derive(Debug, Args)]
 pub(super) struct FmuArguments {
