@@ -41,6 +41,7 @@
 //! - [`plant`]: a rig as one description of numbers, driven by the inputs of a recording
 //! - [`flange`]: another device, a contact flange
 //! - [`replay`]: the loads of the device in a recorded cell, from the arm's commands
+//! - `fmu`: a bench rig as a functional mock-up unit
 //! - [`effects`]: the physics that a description may lack, one effect a file
 //! - [`import`]: logs of real devices made into recordings
 //! - [`case`]: a folder with recordings, read and diagnosed
@@ -85,6 +86,8 @@ pub mod figure;
 pub mod file;
 pub mod flange;
 pub mod fleet;
+#[cfg(feature = "fmu")]
+pub mod fmu;
 #[cfg(feature = "import")]
 pub mod import;
 pub mod keys;

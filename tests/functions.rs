@@ -14,7 +14,9 @@ const MOST_ARGUMENTS: usize = 7;
 type Place = (&'static str, &'static str);
 
 /// Ones with more arguments, with the reason.
-const MANY_ARGUMENTS: [(Place, &str); 2] = [
+const MANY_ARGUMENTS: [(Place, &str); 4] = [
+    (("fmu/fmi3.rs", "fmi3DoStep"), "FMI 3.0"),
+    (("fmu/fmi3.rs", "fmi3InstantiateCoSimulation"), "FMI 3.0"),
     (
         ("simulation/dispatch.rs", "cast_shapes_nonlinear"),
         "Parry's trait QueryDispatcher",

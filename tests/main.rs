@@ -34,6 +34,7 @@ mod faults;
 mod feed;
 mod first_diagnosis;
 mod fleet;
+mod fmu;
 mod functions;
 mod help;
 mod import;

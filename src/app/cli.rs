@@ -67,7 +67,7 @@ enum Command {
     /// Say where the part of a cell can lie: over a grid of positions, where the whole job can be done.
     #[command(after_help = super::place::EXAMPLES)]
     Place(super::place::PlaceArguments),
-    /// Write a program for a robot, from the planned path of a cell.
+    /// Write a program for a robot of a cell's planned path, or a bench as a unit for co-simulation (FMU).
     #[command(after_help = super::export::EXAMPLES)]
     Export(super::export::ExportArguments),
     /// Make a recording of the logs of a real device, as a map says what their columns are.

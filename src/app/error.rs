@@ -426,6 +426,9 @@ pub enum AppError {
     /// A robot's program.
     #[error(transparent)]
     Program(#[from] crate::robot_program::ProgramError),
+    /// A co-simulation unit.
+    #[error(transparent)]
+    Export(#[from] super::export::ExportError),
     /// A viewer.
     #[error(transparent)]
     Viewer(#[from] super::viewer::ViewerError),

@@ -65,7 +65,7 @@ pub use parameters::PlantParameters;
 pub use parts::{DeviceParts, LinkParameters};
 pub use port::Port;
 pub use registry::{Number, Quantity};
-pub use running_device::RunningDevice;
+pub use running_device::{PausedDevice, RunningDevice};
 pub use running_sensors::{RunningSensors, SensorReadings};
 pub use sensors::SensorErrors;
 pub use servo::{Followed, follow, shown};

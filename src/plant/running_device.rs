@@ -23,7 +23,44 @@ pub struct RunningDevice<'a> {
     pub mass_flow: f64,
 }
 
+/// A device that has stopped between two steps: what it needs to go on, apart from its description.
+#[derive(Debug, Clone)]
+pub struct PausedDevice {
+    /// Its state.
+    pub state: DeviceState,
+    /// Motion of its piston.
+    pub motion: PistonMotion,
+    /// Air that had come in when that was last looked at [kg].
+    entered: f64,
+    /// Air that came in since the time before [kg/s].
+    mass_flow: f64,
+}
+
+impl RunningDevice<'_> {
+    /// What it needs to go on.
+    pub fn pause(self) -> PausedDevice {
+        PausedDevice {
+            state: self.state,
+            motion: self.motion,
+            entered: self.entered,
+            mass_flow: self.mass_flow,
+        }
+    }
+}
+
 impl<'a> RunningDevice<'a> {
+    /// One that goes on, by a description that may have changed meanwhile.
+    pub fn resumed(plant: &'a PlantParameters, paused: PausedDevice) -> Self {
+        Self {
+            plant,
+            device: Device::new(&plant.device),
+            state: paused.state,
+            motion: paused.motion,
+            entered: paused.entered,
+            mass_flow: paused.mass_flow,
+        }
+    }
+
     /// As it starts.
     pub fn new(
         plant: &'a PlantParameters,

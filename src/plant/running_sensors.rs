@@ -44,6 +44,11 @@ impl RunningSensors {
         }
     }
 
+    /// Gives the sensors other errors from now on.
+    pub fn set_errors(&mut self, errors: SensorErrors) {
+        self.errors = errors;
+    }
+
     /// Readings at a time [s], later than the last, from what is then; acceleration along extension [m/s2].
     pub fn read(&mut self, time: f64, truth: &SensorReadings, acceleration: f64) -> SensorReadings {
         let errors = self.errors;

@@ -22,33 +22,51 @@ fn less(value: f64, swing: [f64; 3]) -> Cubic {
     Cubic([value - swing[0], -swing[1], -0.5 * swing[2], 0.0])
 }
 
+/// Load on the piston from `time` [s] on, over a step in which the surface, if there is one, stands at a stroke [m] and a force from outside, weight apart, acts
+/// along extension [N].
+pub fn load_under(
+    actual: &Actual<PlantParameters>,
+    time: f64,
+    surface: Option<Cubic>,
+    outside: Cubic,
+) -> PistonLoad<'_> {
+    /// Nothing to push on.
+    const FREE: ContactParameters = ContactParameters::linear(0.0, 0.0);
+    let mass = actual.device.moving_mass;
+    let mut load = match surface {
+        None => {
+            let mut load = PistonLoad::new(&FREE, mass, &[], time);
+            load.stroke.0[0] = f64::INFINITY;
+            load
+        }
+        Some(surface) => {
+            let mut load = PistonLoad::new(&actual.contact, mass, &[Touch::AXIAL], time);
+            load.stroke = surface;
+            load
+        }
+    };
+    load.axial = outside;
+    load.axial.0[0] += mass * actual.gravity_along_extension;
+    load
+}
+
 /// Load on the piston from `time` [s] on, over a step in which the motions of surface and hand are taken as parabolas.
 pub fn load_at<'a>(
     scenario: &BenchScenario,
     actual: &'a Actual<PlantParameters>,
     time: f64,
 ) -> PistonLoad<'a> {
-    /// Nothing to push on.
-    const FREE: ContactParameters = ContactParameters::linear(0.0, 0.0);
-    let mass = actual.device.moving_mass;
-    let mut load = match &scenario.load {
-        LoadScenario::Free => {
-            let mut load = PistonLoad::new(&FREE, mass, &[], time);
-            load.stroke.0[0] = f64::INFINITY;
-            load
-        }
+    let surface = match &scenario.load {
+        LoadScenario::Free => None,
         LoadScenario::Contact { position, motion } => {
-            let mut load = PistonLoad::new(&actual.contact, mass, &[Touch::AXIAL], time);
             let moved = motion.map_or([0.0; 3], |m| {
                 swing(m.peak_to_peak, m.frequency, m.start, time)
             });
-            load.stroke = less(*position, moved);
-            load
+            Some(less(*position, moved))
         }
     };
     let hand = scenario.hand.map_or([0.0; 3], |hand| {
         swing(hand.peak_force, hand.frequency, hand.start, time)
     });
-    load.axial = less(mass * actual.gravity_along_extension, hand);
-    load
+    load_under(actual, time, surface, less(0.0, hand))
 }

@@ -5,10 +5,12 @@
 mod error;
 mod estimator;
 mod load;
+mod running;
 mod sample;
 mod simulation;
 
 pub use error::RigError;
-pub use load::load_at;
+pub use load::{load_at, load_under};
+pub use running::{PausedRig, RunningRig};
 pub use sample::RigTruth;
 pub use simulation::{Rig, RigSimulation};

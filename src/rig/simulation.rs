@@ -5,20 +5,17 @@ use std::path::Path;
 use super::error::RigError;
 use super::estimator::RigEstimator;
 use super::load::load_at;
+use super::running::RunningRig;
 use super::sample::{RigLog, RigSample, RigTruth};
 use crate::control::force::{ForceController, ForceObservation, Pressing};
 use crate::control::observed::Observed;
-use crate::device::{Device, DeviceState, PistonMotion};
+use crate::device::{DeviceState, PistonMotion};
 use crate::effects::actual;
 use crate::physics::valve::ValvePosition;
-use crate::plant::{
-    Actual, Moment, PistonLoad, PlantParameters, Port, RunningDevice, RunningSensors,
-    SensorReadings,
-};
+use crate::plant::{Actual, PistonLoad, PlantParameters};
 use crate::recording::{Recording, RecordingError};
 use crate::scenario::bench::{BenchScenario, CommandScenario, LoadScenario};
 use crate::scenario::{ScenarioError, load_bench};
-use crate::sensing::{Readings, SensorChain, Truth};
 
 /// A bench rig with its job: all that does not change during a run.
 #[derive(Debug, Clone)]
@@ -88,19 +85,13 @@ impl Rig {
 /// A running bench rig.
 pub struct RigSimulation<'a> {
     rig: &'a Rig,
-    device: RunningDevice<'a>,
+    running: RunningRig<'a>,
     controller: ForceController,
     /// Set pressure that the controller gave last, held until its next period [Pa gauge].
     answer: f64,
-    /// Errors of the sensors.
-    errors: RunningSensors,
-    sensors: SensorChain,
-    readings: Readings,
     /// True state at the last sample.
     truth: RigTruth,
     estimator: Option<RigEstimator>,
-    /// Set pressure of the last step [Pa gauge].
-    applied: f64,
     steps: usize,
     total_steps: usize,
     log: RigLog,
@@ -116,34 +107,21 @@ fn held<T: Copy>(steps: &[(f64, T)], time: f64) -> Option<T> {
 impl<'a> RigSimulation<'a> {
     /// The rig at rest, both chambers and the regulator's outlet at the atmosphere.
     pub fn new(rig: &'a Rig) -> Self {
-        let (scenario, actual) = (&rig.scenario, &rig.actual);
-        let parameters = &actual.device;
-        let weight = parameters.moving_mass * actual.gravity_along_extension;
-        let stroke = if scenario.start_stroke == 0.0 {
-            weight.min(0.0) / parameters.end_stop.stiffness
-        } else {
-            scenario.start_stroke
-        };
-        let motion = PistonMotion { stroke, speed: 0.0 };
-        let device = Device::new(parameters);
-        let at_rest = device.at_rest(stroke, 0.0);
+        let scenario = &rig.scenario;
+        let sensing = (&scenario.sensing, scenario.seed);
         let total_steps = (scenario.duration / scenario.step - 1e-9).ceil() as usize;
         let mut simulation = Self {
             rig,
-            device: RunningDevice::new(actual, device, (motion, at_rest)),
+            running: RunningRig::new(&rig.actual, scenario.start_stroke, sensing),
             controller: rig.controller.clone(),
             answer: 0.0,
-            errors: RunningSensors::new(actual.sensors),
-            sensors: SensorChain::new(&scenario.sensing, scenario.seed),
-            readings: Readings::default(),
             truth: RigTruth::default(),
             estimator: scenario.estimator.as_ref().map(RigEstimator::new),
-            applied: 0.0,
             steps: 0,
             total_steps,
             log: RigLog::new(total_steps + 1),
         };
-        simulation.device.state.valve = held(&scenario.valve, 0.0).unwrap_or(ValvePosition::Extend);
+        simulation.switch_valve(0.0);
         simulation.sample();
         simulation
     }
@@ -165,12 +143,12 @@ impl<'a> RigSimulation<'a> {
 
     /// State of the device.
     pub fn device(&self) -> &DeviceState {
-        &self.device.state
+        &self.running.device.state
     }
 
     /// Motion of the piston.
     pub fn motion(&self) -> PistonMotion {
-        self.device.motion
+        self.running.device.motion
     }
 
     /// Time [s].
@@ -215,17 +193,17 @@ impl<'a> RigSimulation<'a> {
     pub fn step_at(&mut self, wanted: f64) -> Result<(), RigError> {
         let scenario = &self.rig.scenario;
         let time = self.time();
-        self.device.state.valve = held(&scenario.valve, time).unwrap_or(ValvePosition::Extend);
-        self.applied = self.sensors.command(wanted, scenario.step);
-        let (mut load, moment) = self.load();
+        self.switch_valve(time);
         let cut = (scenario.step, scenario.substeps);
-        self.device
-            .face_terms(&mut load, moment.as_ref(), scenario.step);
-        self.device.advance::<true>(&load, self.applied, cut);
-        self.device.note_flow(scenario.step);
+        self.running.step(wanted, self.load(time), cut);
         self.steps += 1;
         self.sample();
-        self.check()
+        self.running.check(self.time())
+    }
+
+    fn switch_valve(&mut self, time: f64) {
+        let valve = held(&self.rig.scenario.valve, time);
+        self.running.switch(valve.unwrap_or(ValvePosition::Extend));
     }
 
     /// Set pressure from now on [Pa gauge].
@@ -243,32 +221,30 @@ impl<'a> RigSimulation<'a> {
                 {
                     return self.answer;
                 }
+                let readings = self.running.readings();
                 self.answer = self.controller.set_pressure(&ForceObservation {
                     time,
                     desired_axial_force: desired,
                     gravity_along_axis: scenario.nominal.gravity_along_extension,
-                    measured_axial_force: self.readings.force,
-                    stroke: self.readings.stroke,
-                    acceleration: self.readings.acceleration,
-                    regulator_pressure: self.readings.regulator_pressure,
+                    measured_axial_force: readings.force,
+                    stroke: readings.stroke,
+                    acceleration: readings.acceleration,
+                    regulator_pressure: readings.regulator_pressure,
                 });
                 self.answer
             }
         }
     }
 
-    /// The load on the piston now, and the moment that its terms are of.
-    fn load(&self) -> (PistonLoad<'a>, Option<Moment>) {
-        let mut load = load_at(&self.rig.scenario, &self.rig.actual, self.time());
-        let surface = load.surface();
-        let moment = (self.device).meet_terms(&mut load, self.applied, surface);
-        (load, moment)
+    /// The load on the piston from a time on [s].
+    fn load(&self, time: f64) -> PistonLoad<'a> {
+        load_at(&self.rig.scenario, &self.rig.actual, time)
     }
 
     /// True state of the rig now.
     pub fn truth(&self) -> RigTruth {
-        let (load, moment) = self.load();
-        self.truth_under(&load, moment.as_ref())
+        let time = self.time();
+        self.running.truth(time, self.load(time))
     }
 
     /// Contact force asked for at the last sample [N]; NaN where pressures are.
@@ -281,9 +257,9 @@ impl<'a> RigSimulation<'a> {
 
     /// What there is to see of it after the last step.
     pub fn observed(&self) -> Observed {
-        let (truth, readings, device) = (&self.truth, &self.readings, &self.device);
-        let stroke = truth.motion.stroke;
-        let [extending, retracting] = device.device.pressures(&device.state, stroke);
+        let (truth, running) = (&self.truth, &self.running);
+        let readings = running.readings();
+        let [extending, retracting] = running.pressures();
         let desired = self.desired_force();
         [
             truth.time,
@@ -291,10 +267,10 @@ impl<'a> RigSimulation<'a> {
             desired,
             truth.contact_force,
             readings.force,
-            stroke,
+            truth.motion.stroke,
             truth.motion.speed,
             readings.stroke,
-            self.applied,
+            running.applied(),
             truth.regulator_pressure,
             readings.regulator_pressure,
             extending,
@@ -304,82 +280,26 @@ impl<'a> RigSimulation<'a> {
         ]
     }
 
-    fn truth_under(&self, load: &PistonLoad<'_>, moment: Option<&Moment>) -> RigTruth {
-        let (plant, device, motion) = (&self.rig.actual, &self.device.device, self.device.motion);
-        let force = device.piston_force(&self.device.state, motion);
-        let contact_force = load.contact_force(0.0, motion);
-        let added_outlet = moment.map_or(0.0, |now| plant.term(Port::OutletPressure, now));
-        let outside = load.axial.at(0.0) + load.term_force(0.0, motion);
-        RigTruth {
-            time: self.time(),
-            motion,
-            acceleration: (force + outside - contact_force) / device.parameters().moving_mass,
-            contact_force,
-            regulator_pressure: self.device.state.regulator.outlet + added_outlet,
-        }
-    }
-
     fn sample(&mut self) {
-        let (load, moment) = self.load();
-        let truth = self.truth_under(&load, moment.as_ref());
-        let there = SensorReadings {
-            force: truth.contact_force,
-            stroke: truth.motion.stroke,
-            regulator_pressure: truth.regulator_pressure,
-        };
+        let time = self.time();
+        let load = self.load(time);
+        let surface = load.surface();
+        let truth = self.running.read(time, load);
         self.truth = truth;
-        let mut read = self.errors.read(truth.time, &there, truth.acceleration);
-        if let Some(moment) = moment {
-            read.add(self.rig.actual.reading_terms(&Moment {
-                contact_force: truth.contact_force,
-                ..moment
-            }));
-        }
-        self.readings = self.sensors.measure(
-            truth.time,
-            &Truth {
-                force: read.force,
-                stroke: read.stroke,
-                acceleration: truth.acceleration,
-                regulator_pressure: read.regulator_pressure,
-            },
-        );
         let desired = self.desired_force();
-        let estimate = self.estimator.as_mut().and_then(|estimator| {
-            estimator.update(truth.time, &self.readings, self.device.state.valve)
-        });
+        let readings = self.running.readings();
+        let device = &self.running.device;
+        let estimate = (self.estimator.as_mut())
+            .and_then(|estimator| estimator.update(time, readings, device.state.valve));
         self.log.push(&RigSample {
-            device: &self.device.device,
-            state: &self.device.state,
+            device: &device.device,
+            state: &device.state,
             truth: &truth,
-            readings: &self.readings,
-            surface: load_at(&self.rig.scenario, &self.rig.actual, truth.time).surface(),
-            set_pressure: self.applied,
+            readings,
+            surface,
+            set_pressure: self.running.applied(),
             desired_force: desired,
             estimate,
         });
-    }
-
-    fn check(&self) -> Result<(), RigError> {
-        let air = &self.device.state.air;
-        let named = [
-            ("the air in chamber 1 [kg]", air.masses[0]),
-            ("the air in chamber 2 [kg]", air.masses[1]),
-        ];
-        let bad = named
-            .into_iter()
-            .find(|(_, mass)| !mass.is_finite() || *mass <= 0.0)
-            .or_else(|| {
-                let stroke = self.device.motion.stroke;
-                (!stroke.is_finite()).then_some(("the stroke [m]", stroke))
-            });
-        match bad {
-            None => Ok(()),
-            Some((quantity, value)) => Err(RigError::NotFinite {
-                time: self.time(),
-                quantity,
-                value,
-            }),
-        }
     }
 }

@@ -233,6 +233,7 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// The reason why the run stopped; the last sample is recorded if it is finite.
     pub fn step(&mut self) -> Result<(), SimulationError> {
+        self.given = None;
         self.step_timed(None)
     }
 

@@ -112,6 +112,7 @@ impl EditedScenario {
         };
         let options = RunOptions {
             recorded: wanted.recorded,
+            with_bag: false,
             opening: Opening::Following,
             style: Style::Plain,
         };

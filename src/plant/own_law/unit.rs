@@ -59,6 +59,12 @@ impl Unit {
         Ok(found)
     }
 
+    /// Powers of m, kg, s and K.
+    #[must_use]
+    pub fn powers(self) -> [f64; 4] {
+        self.powers
+    }
+
     /// Product of two.
     #[must_use]
     pub fn times(self, other: Self) -> Self {

@@ -140,6 +140,7 @@ fn count_running(simulation: &Simulation<'_>, values: &[f64], reduced: &[usize])
         feed_lag,
         contact_points: _, // Read, not acted on.
         feed_override,
+        given,
     } = simulation;
     let borrowed: &RunningDevice<'_> = device;
     assert!(std::ptr::eq(
@@ -156,7 +157,7 @@ fn count_running(simulation: &Simulation<'_>, values: &[f64], reduced: &[usize])
     assert_eq!(count(its_controller, values), reduced);
     let rest = (reference, touches, pressed, answer, carried, slide_force);
     assert_eq!(
-        count(&(rest, next_frame, feed_lag, feed_override), values),
+        count(&(rest, next_frame, feed_lag, feed_override, given), values),
         never
     );
 }
