@@ -451,9 +451,6 @@ macro_rules! getters {
                 self.0.to_vec()
             }
         }
-
-        #[cfg(test)]
-        const GETTERS: [&str; OBSERVED.len()] = [$(stringify!($name)),*];
     };
 }
 
