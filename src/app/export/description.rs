@@ -47,9 +47,8 @@ pub(super) fn description(model: &Model, version: Version) -> io::Result<Vec<u8>
         ];
         empty(xml, "DefaultExperiment", experiment)?;
         element(xml, "ModelVariables", Vec::new(), |xml| {
-            let all = model.variables.iter().enumerate();
-            all.map(|(reference, own)| variable(xml, version, reference, own))
-                .collect()
+            let mut all = model.variables.iter().enumerate();
+            all.try_for_each(|(reference, own)| variable(xml, version, reference, own))
         })?;
         element(xml, "ModelStructure", Vec::new(), |xml| {
             structure(xml, version, model)
