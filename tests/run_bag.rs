@@ -100,8 +100,8 @@ fn a_run_comes_back_without_a_map_and_is_the_table_of_its_samples() {
 /// Numbers that a decimal or a product would not keep, a channel without any, gauge and absolute pressures, a wrench of which one component is absent, phases between samples.
 fn planted() -> Recording {
     // Past 2^31 s nothing of ROS 2 goes; steps of 1 ns.
-    let time = vec![0.25, 0.250_000_001, 1.0 / 3.0, 1234.567_890_123];
-    let odd = vec![-0.0, f64::MIN_POSITIVE / 8.0, f64::NAN, 0.1 + 0.2];
+    let time = vec![0.25, 0.250_000_001, 1.0 / 3.0, 1_234.567_890_123];
+    let odd = [-0.0, f64::MIN_POSITIVE / 8.0, f64::NAN, 0.1 + 0.2];
     let channel = |quantity: &str, unit: Unit| {
         let scale = quantity.len() as f64;
         let values = odd.iter().map(|value| value * scale).collect();
@@ -136,7 +136,7 @@ fn planted() -> Recording {
     };
     let phases = vec![
         phase("approach", 0.25, 0.3),
-        phase("follow", 1.0 / 3.0, 1234.567_890_123),
+        phase("follow", 1.0 / 3.0, 1_234.567_890_123),
     ];
     Recording::new(time, channels, phases).unwrap()
 }

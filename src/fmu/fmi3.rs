@@ -285,6 +285,10 @@ mod tests {
 
     /// As an importer in C goes through a unit, with what it may do wrong.
     #[test]
+    #[expect(
+        clippy::too_many_lines,
+        reason = "one unit's life, call by call in the order of the standard"
+    )]
     fn an_importer_in_c_steps_saves_restores_and_is_refused() {
         let folder = tempfile::tempdir().unwrap();
         let project = Path::new(env!("CARGO_MANIFEST_DIR"));

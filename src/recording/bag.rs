@@ -204,7 +204,9 @@ impl Content<'_> {
             Self::Joints(names, lists) => {
                 head(coded, "");
                 coded.count(names.len());
-                names.iter().for_each(|name| coded.text(name));
+                for name in names {
+                    coded.text(name);
+                }
                 for list in lists {
                     coded.numbers(list.iter().map(|channel| channel.values[sample]));
                 }
@@ -237,7 +239,7 @@ fn topics<'a>(recording: &'a Recording, joints: &[String]) -> Vec<Topic<'a>> {
     let mut contents: Vec<Content<'a>> = Vec::new();
     let of_joint =
         |joint: usize, signal: JointSignal| find(joint_quantity(joint, signal), signal.unit());
-    let count = (1..)
+    let count = (1..=recording.channels().len())
         .take_while(|joint| of_joint(*joint, JointSignal::Position).is_some())
         .count();
     if count > 0 {

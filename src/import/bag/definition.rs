@@ -45,9 +45,9 @@ mod tests {
             let text = definition(name).unwrap();
             let read = Definition::parse(name, &text).unwrap();
             let of_number = read.numbers().len() + read.times().len();
-            assert!(of_number > 0, "{}", name);
+            assert!(of_number > 0, "{name}");
             for path in read.numbers() {
-                assert!(read.field(&path).is_some(), "{}: {path}", name);
+                assert!(read.field(&path).is_some(), "{name}: {path}");
             }
         }
         let name = "geometry_msgs/msg/WrenchStamped";
