@@ -524,6 +524,25 @@ fn a_rig_file_is_put_on_a_bench() {
     }
 }
 
+/// Once its `[device]` passed for that of a scenario, and a key of it was called unknown.
+#[test]
+fn a_device_model_is_put_on_a_bench() {
+    let bench = bench("paper_step", "");
+    let files = exported(&bench, "device.toml", "3");
+    let own = std::fs::read(bench.path("device.toml")).unwrap();
+    assert!(files["resources/device.toml"] == own);
+    bench.write("unit.toml", &files["resources/scenario.toml"]);
+    let mut unit = instance(&bench.path("unit.toml"));
+    let at = references(&unit);
+    unit.initialize();
+    unit.set_real(at["set_pressure_gauge_pa"], 1.8e5).unwrap();
+    unit.step(0.0, 5.0).unwrap();
+    // 1.8 bar on two pistons of 32 mm.
+    let expected = 1.8e5 * std::f64::consts::PI * 0.016 * 0.016 * 2.0;
+    let force = unit.real(at["contact_force_n"]).unwrap();
+    assert!((force / expected - 1.0).abs() < 0.02, "{force}");
+}
+
 #[test]
 fn what_cannot_be_a_unit_is_refused_and_nothing_is_written() {
     let with = |file: &str, from: &str, to: &str| {

@@ -30,16 +30,13 @@ fn recorded(scenario: &str) -> Bench {
 
 /// What `idc import` makes of a file, without a map.
 fn imported(bench: &Bench, file: &str) -> Recording {
-    let words = [
-        "import",
-        file,
-        "--out",
-        "back.parquet",
-        "--force",
-        "--quiet",
-    ];
+    let words = ["import", file, "--out", "back.parquet", "--force"];
     let outcome = bench.idc(&words, &[]);
     assert_eq!((outcome.code, outcome.err.as_str()), (0, ""));
+    // A constant that is exact, or a force that rests at a value, is what the program wrote.
+    for word in ["doubtful", "cut off"] {
+        assert!(!outcome.out.contains(word), "{}", outcome.out);
+    }
     read_parquet(&bench.path("back.parquet")).unwrap().recording
 }
 
@@ -94,6 +91,35 @@ fn a_run_comes_back_without_a_map_and_is_the_table_of_its_samples() {
             samples.channels().len()
         );
         assert_same(&imported(&bench, "out/recording.mcap"), &samples);
+    }
+}
+
+/// Once the true stroke and its sensor's reading were columns of one name.
+#[test]
+fn a_table_of_it_has_a_column_for_each_channel() {
+    let bench = recorded("paper_step");
+    let words = ["import", "out/recording.mcap", "--out", "back.csv"];
+    assert_eq!(bench.idc(&words, &[]).code, 0);
+    let text = std::fs::read_to_string(bench.path("back.csv")).unwrap();
+    let mut rows = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let header = rows.next().unwrap();
+    let names: std::collections::BTreeSet<&&str> = header.iter().collect();
+    assert_eq!(names.len(), header.len(), "{header:?}");
+    let samples = read_parquet(&bench.path("out/samples.parquet"))
+        .unwrap()
+        .recording;
+    let at = |name: &str| header.iter().position(|own| *own == name).unwrap();
+    let rows: Vec<Vec<&str>> = rows.collect();
+    for (name, quantity) in [
+        ("stroke_m", "measured_stroke"),
+        ("true_stroke_m", "stroke"),
+        ("force_n", "measured_force"),
+    ] {
+        let expected = samples.values(quantity).unwrap();
+        for (row, expected) in rows.iter().zip(expected) {
+            let found: f64 = row[at(name)].parse().unwrap_or(f64::NAN);
+            assert_eq!(bits(found), bits(*expected), "{name}");
+        }
     }
 }
 

@@ -27,7 +27,7 @@ use crate::quantity::{counted, significant};
 use crate::recording::atomic::write_all;
 use crate::recording::csv::columns_text;
 use crate::recording::long_column::LongColumn;
-use crate::scenario::arm_file::{ArmFile, is_arm_file, load_arm_file};
+use crate::scenario::arm_file::{ArmFile, is_arm_file, is_arm_text, load_arm_file};
 use crate::scenario::postures_file::is_postures_file;
 use crate::scenario::removal_table::is_removal_table;
 use crate::scenario::rig_file::{RigFile, load_rig};
@@ -60,7 +60,7 @@ struct Made {
     out: PathBuf,
     /// Its text.
     csv: String,
-    /// The same as columns, the time [s] first; none where the text is all there is.
+    /// The same as columns.
     columns: Vec<(String, LongColumn)>,
     /// What is printed of it.
     said: String,
@@ -104,7 +104,7 @@ impl Model {
 
 /// A prediction for a caller in the same process.
 pub struct PredictedTable {
-    /// The predicted columns with their 90 % bands, the time [s] first.
+    /// The columns of what `idc predict` writes.
     pub columns: Vec<(String, LongColumn)>,
     /// How far off they are, as --json prints it.
     pub document: Value,
@@ -121,13 +121,12 @@ pub fn predict_table_of(
 ) -> Result<PredictedTable, AppError> {
     let loaded = match text {
         None => Model::load(model)?,
-        Some(text) => match says_kind(text, "recorded_arm") {
-            true => Model::Arm(Box::new(arm_file::from_text(model, text)?)),
-            false => Model::Rig(Box::new(rig_file::from_text(model, text)?)),
-        },
+        Some(text) if is_arm_text(model, text) => {
+            Model::Arm(Box::new(arm_file::from_text(model, text)?))
+        }
+        Some(text) => Model::Rig(Box::new(rig_file::from_text(model, text)?)),
     };
     let Made {
-        csv,
         columns,
         mut document,
         ..
@@ -135,41 +134,7 @@ pub fn predict_table_of(
     if let Some(numbers) = document.as_object_mut() {
         numbers.remove("prediction");
     }
-    let columns = match columns.is_empty() {
-        true => columns_of_text(&csv),
-        false => columns,
-    };
     Ok(PredictedTable { columns, document })
-}
-
-/// Whether a model's text says at its top that it is of this kind.
-fn says_kind(text: &str, kind: &str) -> bool {
-    let line = format!("kind = \"{kind}\"");
-    text.lines().any(|own| own.trim_end() == line)
-}
-
-/// Columns of a table whose cells hold no commas; those with a cell that is no number are of names.
-fn columns_of_text(csv: &str) -> Vec<(String, LongColumn)> {
-    let mut rows = csv.lines().map(|line| line.split(',').collect::<Vec<_>>());
-    let names = rows.next().unwrap_or_default();
-    let rows: Vec<Vec<&str>> = rows.collect();
-    let column = |place: usize| {
-        let cells: Vec<&str> = (rows.iter())
-            .map(|row| row.get(place).copied().unwrap_or_default())
-            .collect();
-        let number = |cell: &&str| match cell.is_empty() {
-            true => Some(f64::NAN),
-            false => cell.parse().ok(),
-        };
-        match cells.iter().map(number).collect::<Option<Vec<f64>>>() {
-            Some(numbers) => LongColumn::Numbers(numbers),
-            None => LongColumn::Names(cells.into_iter().map(str::to_owned).collect()),
-        }
-    };
-    let named = names.iter().enumerate();
-    named
-        .map(|(place, name)| ((*name).to_owned(), column(place)))
-        .collect()
 }
 
 /// Columns with their time [s].
@@ -392,7 +357,8 @@ fn of_flange(
 
 /// Predicts what comes off in the runs of a table.
 fn of_table(rig: &Path, inputs: &Path, out: PathBuf) -> Result<Made, AppError> {
-    let (csv, left) = predict_table(rig, inputs)?;
+    let predicted = predict_table(rig, inputs)?;
+    let left = predicted.left;
     Ok(Made {
         said: format!(
             "removed volume: RMS {} of ln(measured / predicted), {} % of the predicted volume, in {}\nwritten to {}\n",
@@ -409,8 +375,8 @@ fn of_table(rig: &Path, inputs: &Path, out: PathBuf) -> Result<Made, AppError> {
             "rows_without_prediction": left.nothing,
             "rms_of_log_volume": left.log,
         }),
-        csv,
-        columns: Vec::new(),
+        csv: predicted.csv,
+        columns: predicted.columns,
         out,
     })
 }
@@ -440,7 +406,7 @@ fn of_postures(file: &Path, inputs: &Path, out: PathBuf) -> Result<Made, AppErro
             "rms": rms,
         }),
         csv: predicted.csv,
-        columns: Vec::new(),
+        columns: predicted.columns,
         said,
         out,
     })

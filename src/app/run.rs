@@ -12,6 +12,7 @@ mod variants;
 
 pub(super) use cell_run::{Listener, RunPart};
 pub(super) use command::RunArguments;
+pub(super) use in_process::edits_of;
 pub use in_process::{EditedScenario, FinishedRun, RunFolder};
 pub(super) use numbers::{Numbers, can_run, numbers};
 pub(super) use settings::blamed;

@@ -37,7 +37,7 @@ pub use postures::{
     predict_postures,
 };
 pub use recordings::{check_finite, read_in_any_unit, read_rig, shown_columns};
-pub use removal_table::{RemovalCase, RemovalDiagnosed, predict_table};
+pub use removal_table::{RemovalCase, RemovalDiagnosed, TablePrediction, predict_table};
 pub use rig::{RIG, rig_of, to_fit};
 
 use crate::diagnosis::answer::Answer;

@@ -20,6 +20,7 @@ use crate::diagnosis::postures::model::{Model, WRENCH_COLUMNS, residuals};
 use crate::diagnosis::postures::nominal::{Bounded, Declared, Nominal};
 use crate::diagnosis::postures::{Posture, StillRecording, least_turn};
 use crate::recording::csv::{header_of, read_named};
+use crate::recording::long_column::LongColumn;
 use crate::recording::provenance::Provenance;
 use crate::scenario::postures_file::{
     DeclaredValue, PoseOf, PosturesFile, ReadingAxes, ReadingOf, WrenchValues, from_text,
@@ -433,19 +434,31 @@ fn model_of(file: &PosturesFile) -> Result<Model, CaseError> {
 fn predicted(table: &StillTable, model: &Model, with_torques: bool) -> String {
     let count = if with_torques { 6 } else { 3 };
     let mut text = format!("line,{}\n", WRENCH_COLUMNS[..count].join(","));
-    for (posture, line) in table.recording.postures.iter().zip(&table.lines) {
-        let [force, torque] = model.reads(&posture.base_from_sensor);
-        let values = force.iter().chain(&torque).take(count);
-        let values: Vec<String> = values.map(|value| format!("{value:.6}")).collect();
+    for (values, line) in read_by(table, model).iter().zip(&table.lines) {
+        let values: Vec<String> = values[..count].iter().map(|v| format!("{v:.6}")).collect();
         text += &format!("{line},{}\n", values.join(","));
     }
     text
+}
+
+/// What a description says that the sensor reads in each posture, by `WRENCH_COLUMNS`.
+fn read_by(table: &StillTable, model: &Model) -> Vec<[f64; 6]> {
+    let postures = table.recording.postures.iter();
+    postures
+        .map(|posture| {
+            let [force, torque] = model.reads(&posture.base_from_sensor);
+            let mut both = force.iter().chain(&torque).copied();
+            [(); 6].map(|()| both.next().unwrap_or(f64::NAN))
+        })
+        .collect()
 }
 
 /// A prediction of a table of postures.
 pub struct PosturesPrediction {
     /// As comma-separated values.
     pub csv: String,
+    /// The same as columns.
+    pub columns: Vec<(String, LongColumn)>,
     /// Number of postures.
     pub postures: usize,
     /// Columns that were measured: root mean square of measured less predicted.
@@ -474,7 +487,17 @@ pub fn predict_postures(path: &Path, table: &Path) -> Result<PosturesPrediction,
             let rms = root_mean_square(left.iter().copied())?;
             rms.is_finite().then_some((column, rms))
         });
+    let lines = read.lines.iter().map(|line| *line as f64).collect();
+    let values = read_by(&read, &model);
+    let count = if with_torques { 6 } else { 3 };
+    let wrench = WRENCH_COLUMNS[..count].iter().enumerate();
+    let wrench = wrench.map(|(place, name)| {
+        let values = values.iter().map(|own| own[place]).collect();
+        ((*name).to_owned(), LongColumn::Numbers(values))
+    });
+    let line = ("line".to_owned(), LongColumn::Numbers(lines));
     Ok(PosturesPrediction {
+        columns: [line].into_iter().chain(wrench).collect(),
         off: off.collect(),
         csv: predicted(&read, &model, with_torques),
         postures: read.lines.len(),

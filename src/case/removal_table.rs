@@ -11,9 +11,14 @@ use crate::diagnosis::removal::{
     Deviation, Left, Reference, RemovalDiagnosis, TableLaw, TableRow, diagnose_table,
 };
 use crate::recording::csv::read_named;
+use crate::recording::long_column::LongColumn;
 use crate::recording::provenance::Provenance;
 use crate::scenario::removal_table::{RemovalTableFile, TableColumn, load_removal_table};
 
+/// Columns of a prediction.
+const COLUMNS: [&str; 4] = ["table", "line", "removed_mm3", "predicted_mm3"];
+/// Cubic millimetres in a cubic metre.
+const MM3: f64 = 1e9;
 /// Fewest rows to judge a law by: a few more than it has numbers.
 const LEAST_ROWS: usize = 5;
 
@@ -151,11 +156,21 @@ impl RemovalCase {
     }
 }
 
-/// Rows of a table with what the law of a file predicts of them, and how far that is from what was measured.
+/// What the law of a file predicts of the rows of a table.
+pub struct TablePrediction {
+    /// As comma-separated values.
+    pub csv: String,
+    /// The same as columns.
+    pub columns: Vec<(String, LongColumn)>,
+    /// How far it is from what was measured.
+    pub left: Left,
+}
+
+/// Predicts the rows of a table by the law of a file.
 ///
 /// # Errors
 /// A file or table that cannot be read, a law without its coefficient.
-pub fn predict_table(path: &Path, table: &Path) -> Result<(String, Left), CaseError> {
+pub fn predict_table(path: &Path, table: &Path) -> Result<TablePrediction, CaseError> {
     let file = load_removal_table(path)?;
     let whole = table.canonicalize().unwrap_or_else(|_| table.to_owned());
     let (mut rows, kept) = rows_of(&file, &whole)?;
@@ -166,7 +181,24 @@ pub fn predict_table(path: &Path, table: &Path) -> Result<(String, Left), CaseEr
             file: path.display().to_string(),
         });
     }
-    Ok((predicted(&law, &rows), Left::of(&law, &rows)))
+    let names = rows.iter().map(|row| row.table.clone()).collect();
+    let numbers =
+        |of: &dyn Fn(&TableRow) -> f64| LongColumn::Numbers(rows.iter().map(of).collect());
+    let columns = [
+        LongColumn::Names(names),
+        numbers(&|row| row.line as f64),
+        numbers(&|row| row.volume * MM3),
+        numbers(&|row| law.volume_of(row) * MM3),
+    ];
+    Ok(TablePrediction {
+        csv: predicted(&law, &rows),
+        columns: COLUMNS
+            .map(str::to_owned)
+            .into_iter()
+            .zip(columns)
+            .collect(),
+        left: Left::of(&law, &rows),
+    })
 }
 
 /// Rows of a table to fit, and those that are kept back.
@@ -342,9 +374,9 @@ fn improved(file: &RemovalTableFile, diagnosis: &RemovalDiagnosis) -> String {
 
 /// Rows with what a law predicts.
 fn predicted(law: &TableLaw, rows: &[TableRow]) -> String {
-    let mut text = String::from("table,line,removed_mm3,predicted_mm3\n");
+    let mut text = format!("{}\n", COLUMNS.join(","));
     for row in rows {
-        let [measured, predicted] = [row.volume, law.volume_of(row)].map(|v| v * 1e9);
+        let [measured, predicted] = [row.volume, law.volume_of(row)].map(|v| v * MM3);
         let shown = if predicted.is_finite() {
             format!("{predicted:.6e}")
         } else {

@@ -7,9 +7,10 @@
 
 use std::ffi::{c_char, c_void};
 
+use super::instance::Instance;
 use super::interface::{
-    ERROR, Logger, Messages, SecondLog, Status, filled, free, free_state, given, instantiate, put,
-    resources_of_uri, restore, save, with, without,
+    ERROR, Logger, Messages, SecondLog, Status, free, free_state, get, instantiate, put,
+    resources_of_uri, restore, save, set, with, without,
 };
 
 /// Functions of an importer. What is behind the logger is not called: memory is this library's own, and a step ends before it returns.
@@ -115,13 +116,12 @@ extern "C" fn fmi2GetReal(
     count: usize,
     values: *mut f64,
 ) -> Status {
-    with(component, |instance| {
-        let references = given(references, count);
-        for (value, reference) in filled(values, count).iter_mut().zip(references) {
-            *value = instance.real(*reference)?;
-        }
-        Ok(())
-    })
+    get(
+        component,
+        (references, count),
+        (values, count),
+        Instance::real,
+    )
 }
 
 #[unsafe(no_mangle)]
@@ -131,13 +131,12 @@ extern "C" fn fmi2SetReal(
     count: usize,
     values: *const f64,
 ) -> Status {
-    with(component, |instance| {
-        let values = given(values, count);
-        for (reference, value) in given(references, count).iter().zip(values) {
-            instance.set_real(*reference, *value)?;
-        }
-        Ok(())
-    })
+    set(
+        component,
+        (references, count),
+        (values, count),
+        Instance::set_real,
+    )
 }
 
 #[unsafe(no_mangle)]
@@ -147,13 +146,12 @@ extern "C" fn fmi2GetBoolean(
     count: usize,
     values: *mut i32,
 ) -> Status {
-    with(component, |instance| {
-        let references = given(references, count);
-        for (value, reference) in filled(values, count).iter_mut().zip(references) {
-            *value = i32::from(instance.boolean(*reference)?);
-        }
-        Ok(())
-    })
+    get(
+        component,
+        (references, count),
+        (values, count),
+        |instance, reference| Ok(i32::from(instance.boolean(reference)?)),
+    )
 }
 
 #[unsafe(no_mangle)]
@@ -163,13 +161,12 @@ extern "C" fn fmi2SetBoolean(
     count: usize,
     values: *const i32,
 ) -> Status {
-    with(component, |instance| {
-        let values = given(values, count);
-        for (reference, value) in given(references, count).iter().zip(values) {
-            instance.set_boolean(*reference, *value != 0)?;
-        }
-        Ok(())
-    })
+    set(
+        component,
+        (references, count),
+        (values, count),
+        |instance, reference, value| instance.set_boolean(reference, value != 0),
+    )
 }
 
 #[unsafe(no_mangle)]

@@ -7,9 +7,10 @@
 
 use std::ffi::{c_char, c_void};
 
+use super::instance::Instance;
 use super::interface::{
-    Logger, Messages, Status, ThirdLog, as_many, filled, free, free_state, given, instantiate, put,
-    resources_at, restore, save, with, without,
+    Logger, Messages, Status, ThirdLog, free, free_state, get, instantiate, put, resources_at,
+    restore, save, set, with, without,
 };
 
 // SAFETY, of each `no_mangle` below: the name is the standard's, and no other function of the program has it.
@@ -101,14 +102,12 @@ extern "C" fn fmi3GetFloat64(
     values: *mut f64,
     value_count: usize,
 ) -> Status {
-    with(component, |instance| {
-        as_many(count, value_count)?;
-        let references = given(references, count);
-        for (value, reference) in filled(values, count).iter_mut().zip(references) {
-            *value = instance.real(*reference)?;
-        }
-        Ok(())
-    })
+    get(
+        component,
+        (references, count),
+        (values, value_count),
+        Instance::real,
+    )
 }
 
 #[unsafe(no_mangle)]
@@ -119,14 +118,12 @@ extern "C" fn fmi3SetFloat64(
     values: *const f64,
     value_count: usize,
 ) -> Status {
-    with(component, |instance| {
-        as_many(count, value_count)?;
-        let values = given(values, count);
-        for (reference, value) in given(references, count).iter().zip(values) {
-            instance.set_real(*reference, *value)?;
-        }
-        Ok(())
-    })
+    set(
+        component,
+        (references, count),
+        (values, value_count),
+        Instance::set_real,
+    )
 }
 
 #[unsafe(no_mangle)]
@@ -137,14 +134,12 @@ extern "C" fn fmi3GetBoolean(
     values: *mut bool,
     value_count: usize,
 ) -> Status {
-    with(component, |instance| {
-        as_many(count, value_count)?;
-        let references = given(references, count);
-        for (value, reference) in filled(values, count).iter_mut().zip(references) {
-            *value = instance.boolean(*reference)?;
-        }
-        Ok(())
-    })
+    get(
+        component,
+        (references, count),
+        (values, value_count),
+        Instance::boolean,
+    )
 }
 
 #[unsafe(no_mangle)]
@@ -155,14 +150,12 @@ extern "C" fn fmi3SetBoolean(
     values: *const u8,
     value_count: usize,
 ) -> Status {
-    with(component, |instance| {
-        as_many(count, value_count)?;
-        let values = given(values, count);
-        for (reference, value) in given(references, count).iter().zip(values) {
-            instance.set_boolean(*reference, *value != 0)?;
-        }
-        Ok(())
-    })
+    set(
+        component,
+        (references, count),
+        (values, value_count),
+        |instance, reference, value| instance.set_boolean(reference, value != 0),
+    )
 }
 
 #[unsafe(no_mangle)]

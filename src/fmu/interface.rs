@@ -153,7 +153,7 @@ pub(super) fn without(component: *mut c_void, function: &'static str) -> Status 
 }
 
 /// An array of an importer.
-pub(super) fn given<'a, T>(values: *const T, count: usize) -> &'a [T] {
+fn given<'a, T>(values: *const T, count: usize) -> &'a [T] {
     if values.is_null() || count == 0 {
         return &[];
     }
@@ -162,7 +162,7 @@ pub(super) fn given<'a, T>(values: *const T, count: usize) -> &'a [T] {
 }
 
 /// An array of an importer that is filled.
-pub(super) fn filled<'a, T>(values: *mut T, count: usize) -> &'a mut [T] {
+fn filled<'a, T>(values: *mut T, count: usize) -> &'a mut [T] {
     if values.is_null() || count == 0 {
         return &mut [];
     }
@@ -186,6 +186,40 @@ pub(super) fn text(text: *const c_char) -> Option<String> {
     // SAFETY: texts of the interface end with a zero.
     let text = unsafe { CStr::from_ptr(text) };
     Some(text.to_string_lossy().into_owned())
+}
+
+/// Reads variables: references and values, each with its number.
+pub(super) fn get<T>(
+    component: *mut c_void,
+    (references, count): (*const u32, usize),
+    (values, value_count): (*mut T, usize),
+    read: impl Fn(&mut Instance, u32) -> Result<T, FmuError>,
+) -> Status {
+    with(component, |instance| {
+        as_many(count, value_count)?;
+        let references = given(references, count);
+        for (value, reference) in filled(values, count).iter_mut().zip(references) {
+            *value = read(instance, *reference)?;
+        }
+        Ok(())
+    })
+}
+
+/// Sets variables: references and values, each with its number.
+pub(super) fn set<T: Copy>(
+    component: *mut c_void,
+    (references, count): (*const u32, usize),
+    (values, value_count): (*const T, usize),
+    write: impl Fn(&mut Instance, u32, T) -> Result<(), FmuError>,
+) -> Status {
+    with(component, |instance| {
+        as_many(count, value_count)?;
+        let values = given(values, count);
+        for (reference, value) in given(references, count).iter().zip(values) {
+            write(instance, *reference, *value)?;
+        }
+        Ok(())
+    })
 }
 
 /// Saves the state of an instance where the importer wants it, in place of one that is there.
@@ -237,7 +271,7 @@ fn no_place() -> FmuError {
 }
 
 /// Values in as great a number as their references.
-pub(super) fn as_many(references: usize, values: usize) -> Result<(), FmuError> {
+fn as_many(references: usize, values: usize) -> Result<(), FmuError> {
     match references == values {
         true => Ok(()),
         false => Err(FmuError::Argument {

@@ -4,8 +4,8 @@
 //! resources/scenario.toml -> model (variables, token) -> instance: inputs -> the step of a bench -> outputs
 //! ```
 //!
-//! All of it is safe but the functions in C of either version (`fmi2`, `fmi3`, and `interface`, which they share), the only files of the program in which
-//! `unsafe` is allowed.
+//! All of it is safe but the functions in C of either version (`fmi2`, `fmi3`, and `interface`, which they share). Beside them `unsafe` is allowed only where
+//! Python's macros need it.
 
 mod error;
 mod fmi2;

@@ -67,6 +67,10 @@ pub fn findings(imported: &Imported, map: &ImportMap) -> Vec<Finding> {
             found
                 .doubts
                 .extend(doubts::of_command(&imported.recording, channel));
+            if map.says_itself {
+                found.doubts.clear();
+                found.cut_off_at.clear();
+            }
             all.push(found);
         }
     }

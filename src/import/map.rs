@@ -27,6 +27,8 @@ pub struct ImportMap {
     pub constants: Vec<Constant>,
     /// Phases of the job, where they are known.
     pub phases: Vec<PhaseSpan>,
+    /// Whether the file itself says what it holds: no unit was chosen by hand, so none is doubted.
+    pub says_itself: bool,
 }
 
 /// A quantity that no log holds, with the value that it has throughout.

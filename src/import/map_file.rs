@@ -48,6 +48,7 @@ pub fn load_map(path: &Path) -> Result<ImportMap, ScenarioError> {
         files,
         constants,
         phases: Vec::new(),
+        says_itself: false,
     };
     check_together(&document, &map)?;
     Ok(map)

@@ -57,20 +57,21 @@ impl Run {
     }
 }
 
-/// Runs a scenario. Of a folder: whether new files take the place of old ones, and whether recording.rrd is among them.
+/// Runs a scenario. Of a folder: whether new files take the place of old ones, and whether recording.rrd and recording.mcap are among them.
 #[pyfunction]
 pub(super) fn run(
     py: Python<'_>,
     scenario: &Scenario,
     set: Vec<SetKey>,
     effects: Vec<String>,
-    out: Option<(PathBuf, bool, bool)>,
+    out: Option<(PathBuf, bool, bool, bool)>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Run> {
-    let folder = out.map(|(path, force, recorded)| RunFolder {
+    let folder = out.map(|(path, force, recorded, with_bag)| RunFolder {
         path,
         force,
         recorded,
+        with_bag,
     });
     let work = |reporter: &mut super::call::Reporter| {
         let scenario = edited(scenario, set, &effects)?;

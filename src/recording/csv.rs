@@ -8,6 +8,7 @@ use std::path::Path;
 use super::atomic::write_atomic;
 use super::{RecordedChannel, Recording, RecordingError};
 use crate::stats::median_step;
+use crate::unit::column_name;
 use columns::{COLUMNS, Column, TIME};
 
 mod cell;
@@ -110,16 +111,25 @@ pub fn write_csv(
     write_atomic(path, |file| write_columns(file, time, columns))
 }
 
-/// Writes a recording as comma-separated values, its columns named as [`read_csv`] and [`read_cell_csv`] take them.
+/// Writes a recording as comma-separated values, its columns named as [`read_csv`] and [`read_cell_csv`] take them: those of sensors by their short names. A quantity
+/// that would have the name of its sensor's column, as in a simulated recording that holds both, is `true_` and that name.
 ///
 /// # Errors
 /// The file cannot be written; nothing is left in its place.
 pub fn write_recording(path: &Path, recording: &Recording) -> Result<(), RecordingError> {
     let channels = recording.channels();
-    let names: Vec<String> = channels
-        .iter()
-        .map(|channel| column_of(&channel.quantity, channel.unit))
-        .collect();
+    let mut names = Vec::with_capacity(channels.len());
+    for own in channels {
+        let name = column_of(&own.quantity, own.unit);
+        let is_of_sensor = |other: &RecordedChannel| {
+            other.quantity != own.quantity && column_of(&other.quantity, other.unit) == name
+        };
+        let is_plain = name == column_name(&own.quantity, own.unit);
+        names.push(match is_plain && channels.iter().any(is_of_sensor) {
+            true => format!("true_{name}"),
+            false => name,
+        });
+    }
     let values = channels.iter().map(|channel| channel.values.as_slice());
     let columns: Vec<(&str, &[f64])> = names.iter().map(String::as_str).zip(values).collect();
     write_csv(path, recording.time(), &columns)

@@ -181,11 +181,14 @@ struct KindKeys {
 /// Whether a file says that it is of a recorded arm; not where it cannot be read.
 #[must_use]
 pub fn is_arm_file(path: &Path) -> bool {
-    let Ok(text) = read_text(path) else {
-        return false;
-    };
+    read_text(path).is_ok_and(|text| is_arm_text(path, &text))
+}
+
+/// As [`is_arm_file`], of a text that stands, or could stand, in the file at `path`.
+#[must_use]
+pub fn is_arm_text(path: &Path, text: &str) -> bool {
     let kind =
-        Document::new(path, &text, u32::MAX).and_then(|document| document.parse::<KindKeys>(&[]));
+        Document::new(path, text, u32::MAX).and_then(|document| document.parse::<KindKeys>(&[]));
     kind.is_ok_and(|keys| keys.kind.as_deref() == Some(RECORDED_ARM))
 }
 

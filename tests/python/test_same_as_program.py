@@ -54,11 +54,11 @@ def test_a_run_has_the_numbers_and_samples_of_the_program(program, tmp_path, sce
 
 def test_out_writes_what_the_program_writes_and_nothing_is_written_without(program, tmp_path, monkeypatch):
     settings = {"bench.duration_s": 2.0}
-    program("run", BENCH, "--set=bench.duration_s=2", "--out", tmp_path / "own", "--quiet")
-    idc.run(BENCH, set=settings, out=tmp_path / "package")
+    program("run", BENCH, "--set=bench.duration_s=2", "--out", tmp_path / "own", "--mcap", "--quiet")
+    idc.run(BENCH, set=settings, out=tmp_path / "package", mcap=True)
     names = sorted(path.name for path in (tmp_path / "own").iterdir())
     assert sorted(path.name for path in (tmp_path / "package").iterdir()) == names
-    for name in ("samples.parquet", "varied.toml"):
+    for name in ("samples.parquet", "varied.toml", "recording.mcap"):
         assert (tmp_path / "own" / name).read_bytes() == (tmp_path / "package" / name).read_bytes(), name
     with pytest.raises(idc.Error, match="holds results already"):
         idc.run(BENCH, set=settings, out=tmp_path / "package")

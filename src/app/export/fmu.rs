@@ -8,18 +8,19 @@ use super::super::error::{AppError, ExitCode};
 use super::super::files::{OverwritePolicy, prepare_file};
 use super::super::output::say;
 use super::super::terminal::shown_path;
+use super::super::this_program::this_program;
 use super::archive::packed;
 use super::description::{IDENTIFIER, description};
 use super::error::ExportError;
 use super::version::Version;
 use crate::flange::FittedFlange;
 use crate::fmu::{Causality, FmuError, MARK, Model, SCENARIO};
-use crate::plant::DeviceParts;
+use crate::plant::{DeviceParts, PlantParameters};
 use crate::recording::RecordingError;
 use crate::recording::atomic::{write_all, write_text};
 use crate::scenario::rig_file::{RigFile, load_rig};
 use crate::scenario::{
-    AnyScenario, KeyValue, ScenarioError, ScenarioTemplate, keys_given, load_any,
+    AnyScenario, KeyValue, ScenarioError, ScenarioTemplate, keys_given, load_any, load_device,
 };
 
 /// For the help.
@@ -48,7 +49,7 @@ const LIBRARY: &str = "libidc_cell.so";
 
 #[derive(Debug, Args)]
 pub(super) struct FmuArguments {
-    /// Scenario of a bench, or rig file, nominal or improved.
+    /// Scenario of a bench, rig file, nominal or improved, or device model.
     file: PathBuf,
     /// Version of FMI.
     #[arg(long, default_value = "3")]
@@ -115,15 +116,21 @@ struct Resources {
     device: String,
 }
 
-/// The scenario with its device beside it, whatever file it names; of a rig file a bench with a surface.
+/// The scenario with its device beside it, whatever file it names; of a rig file or a device model a bench with a surface.
 fn resources(file: &Path) -> Result<Resources, AppError> {
     let keys = keys_given(file, "")?;
     let has = |key: &str| keys.iter().any(|given| given == key);
-    if !has("kind") && !has("title") && has("cylinder") {
-        let rig = load_rig(file)?;
-        refuse_part(&rig)?;
+    if !has("kind") && !has("title") && (has("cylinder") || has("device")) {
+        let plant = match has("cylinder") {
+            true => {
+                let rig = load_rig(file)?;
+                refuse_part(&rig)?;
+                rig.plant
+            }
+            false => load_device(file)?.1,
+        };
         return Ok(Resources {
-            scenario: bench_of(&rig),
+            scenario: bench_of(file, &plant),
             device: text_of(file)?,
         });
     }
@@ -163,13 +170,16 @@ fn refuse_part(rig: &RigFile) -> Result<(), ExportError> {
     }
 }
 
-/// A bench on which a rig meets a surface, at four fifths of its stroke until an importer says otherwise, with ideal instruments.
-fn bench_of(rig: &RigFile) -> String {
-    let stem = rig.path.file_stem().unwrap_or_default().to_string_lossy();
+/// A bench on which a device meets a surface, at four fifths of its stroke until an importer says otherwise, with ideal instruments.
+fn bench_of(file: &Path, plant: &PlantParameters) -> String {
+    let stem = file.file_stem().unwrap_or_default().to_string_lossy();
     // What a text of a file takes as it is.
     let plain = |letter: &char| letter.is_alphanumeric() || " _-.".contains(*letter);
-    let title: String = "Rig ".chars().chain(stem.chars().filter(plain)).collect();
-    let position = (0.8e3 * rig.plant.device.full_stroke).min(500.0);
+    let title: String = "Bench of "
+        .chars()
+        .chain(stem.chars().filter(plain))
+        .collect();
+    let position = (0.8e3 * plant.device.full_stroke).min(500.0);
     format!(
         "# Written by idc export fmu.\nschema = 2\nkind = \"bench\"\ntitle = \"{title}\"\n\n[device]\nmodel = \"{DEVICE}\"\n\n[bench]\nduration_s = 10\n\n[load]\nkind = \"load_cell\"\nposition_mm = {position:.3}\n\n[[command]]\nat_s = 0\nset_pressure_bar_gauge = 0\n"
     )
@@ -200,7 +210,7 @@ fn holds(bytes: &[u8], mark: &[u8]) -> bool {
 
 /// Beside the program, as cargo builds it; in ../lib, as it is installed.
 fn usual_places() -> Vec<PathBuf> {
-    let program = std::env::current_exe().unwrap_or_default();
+    let program = this_program().unwrap_or_default();
     let folder = program.parent().unwrap_or(Path::new("")).to_owned();
     let above = folder.parent().unwrap_or(Path::new(""));
     vec![folder.join(LIBRARY), above.join("lib").join(LIBRARY)]

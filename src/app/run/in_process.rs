@@ -10,7 +10,7 @@ use super::settings::{blamed, with_flags};
 use super::source::Source;
 use crate::document::{Style, html};
 use crate::recording::Recording;
-use crate::run::{Finished, Job, RunResult, apply_effects};
+use crate::run::{Finished, Job, RunError, RunResult, apply_effects};
 use crate::scenario::{EffectRequest, KeyValue, ScenarioTemplate};
 use crate::viewer::Opening;
 
@@ -30,6 +30,8 @@ pub struct RunFolder {
     pub force: bool,
     /// Whether recording.rrd is written.
     pub recorded: bool,
+    /// Whether recording.mcap is written.
+    pub with_bag: bool,
 }
 
 /// A run that has ended.
@@ -37,6 +39,20 @@ pub struct FinishedRun {
     scenario: EditedScenario,
     job: Job,
     finished: Finished,
+}
+
+/// Edits of a scenario that put in effects of the catalogue, each as `--with` takes it.
+///
+/// # Errors
+/// An effect that cannot be put in as it is asked for.
+pub(in crate::app) fn edits_of(
+    effects: &[String],
+    template: &ScenarioTemplate,
+) -> Result<Vec<KeyValue>, AppError> {
+    let requests = effects.iter().map(|text| EffectRequest::parse(text));
+    let requests = requests.collect::<Result<Vec<_>, _>>();
+    let requests = requests.map_err(|reason| RunError::With { reason })?;
+    Ok(apply_effects(&requests, template)?)
 }
 
 impl EditedScenario {
@@ -49,12 +65,7 @@ impl EditedScenario {
         effects: &[String],
         set: Vec<KeyValue>,
     ) -> Result<Self, AppError> {
-        let requests = effects.iter().map(|text| {
-            EffectRequest::parse(text)
-                .map_err(|reason| AppError::from(crate::run::RunError::With { reason }))
-        });
-        let requests: Vec<EffectRequest> = requests.collect::<Result<_, _>>()?;
-        let mut edits = apply_effects(&requests, &template)?;
+        let mut edits = edits_of(effects, &template)?;
         edits.extend(set);
         Ok(Self { template, edits })
     }
@@ -112,7 +123,7 @@ impl EditedScenario {
         };
         let options = RunOptions {
             recorded: wanted.recorded,
-            with_bag: false,
+            with_bag: wanted.with_bag,
             opening: Opening::Following,
             style: Style::Plain,
         };

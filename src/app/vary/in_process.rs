@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use super::super::error::AppError;
 use super::super::files::{OutputFolder, OverwritePolicy, REPORT};
-use super::super::run::Numbers;
+use super::super::run::{Numbers, edits_of};
 use super::page;
 use super::planned::Files;
 use super::table::{RUNS, SWEEP, add, empty, layout};
@@ -18,8 +18,7 @@ use crate::document::html;
 use crate::recording::atomic::write_text;
 use crate::recording::long_column::LongColumn;
 use crate::recording::long_table::write_long;
-use crate::run::apply_effects;
-use crate::scenario::{EffectRequest, ScenarioTemplate};
+use crate::scenario::ScenarioTemplate;
 use crate::tasks::Head;
 use crate::vary::{Points, Sampling, Sweep, Swept, Values, Variable};
 
@@ -60,13 +59,7 @@ pub fn vary_scenario(
     request: &SweepRequest,
     progress: &mut dyn FnMut(usize, usize),
 ) -> Result<SweepOfRuns, AppError> {
-    let effects = request
-        .effects
-        .iter()
-        .map(|text| EffectRequest::parse(text));
-    let effects = effects.collect::<Result<Vec<_>, _>>();
-    let effects = effects.map_err(|reason| crate::run::RunError::With { reason })?;
-    let fixed = apply_effects(&effects, template)?;
+    let fixed = edits_of(&request.effects, template)?;
     let is_count = |key: &str, whole| template.is_count(key, whole, &fixed);
     let variables = request.variables.iter().cloned();
     let variables = variables

@@ -98,7 +98,7 @@ mod tests {
     use crate::diagnosis::fit::cross_validation::{Depth, left_out};
     use crate::diagnosis::fit::free::{Free, Prior};
     use crate::diagnosis::fit::model_error::ModelError;
-    use crate::diagnosis::fit::{FINEST, FULL, Limit, fit};
+    use crate::diagnosis::fit::{FINEST, FULL, Limit, ROUGH, fit};
     use crate::diagnosis::recordings::clean::clean;
     use crate::diagnosis::recordings::evidence::{Evidence, Measured, by_channel, rms_by_channel};
     use crate::effects::Coordinate;
@@ -284,6 +284,29 @@ mod tests {
         for (column, newest) in whole.columns.iter().zip(&again.columns) {
             for (slope, newest) in column.iter().zip(newest) {
                 assert!((slope - newest).abs() <= 1e-3 * newest.abs() + 1e-9);
+            }
+        }
+    }
+
+    /// Once a stage ended where derivatives of an earlier place promised no more, and most of the cost was left.
+    #[test]
+    fn a_stage_ends_where_new_derivatives_promise_no_more() {
+        let evidence = fills(0);
+        for size in [0.02, 0.1, 1.0, 5.0, 30.0] {
+            for rate in [0.02, 0.1, 0.5, 5.0, 30.0] {
+                let fitted = |size: f64, rate: f64, iterations: usize| {
+                    let start = (&[size, rate], None);
+                    let free = [free(0, size), free(1, rate)];
+                    fit(&evidence, start, (&free, &[]), ROUGH, Limit::of(iterations))
+                };
+                let ended = fitted(size, rate, 40);
+                let further = fitted(ended.values[0], ended.values[1], 1);
+                let gain = ended.cost() - further.cost();
+                assert!(
+                    gain < 0.01 * ended.cost(),
+                    "from {size}, {rate}: a step gains {gain} of {} that are left",
+                    ended.cost()
+                );
             }
         }
     }

@@ -64,6 +64,7 @@ pub fn map_of_bag(path: &Path) -> Result<Option<ImportMap>, ImportError> {
         files: vec![file_map(path, limit, channels)],
         constants: Vec::new(),
         phases,
+        says_itself: true,
     }))
 }
 

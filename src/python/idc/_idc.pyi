@@ -112,7 +112,7 @@ def run(
     scenario: Scenario,
     set: Sequence[SetKey],
     effects: Sequence[str],
-    out: tuple[str | PathLike[str], bool, bool] | None,
+    out: tuple[str | PathLike[str], bool, bool, bool] | None,
     progress: Progress | None,
 ) -> Run: ...
 def diagnose(

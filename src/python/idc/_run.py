@@ -73,6 +73,7 @@ def run(
     out: str | PathLike[str] | None = None,
     force: bool = False,
     recording: bool = True,
+    mcap: bool = False,
     progress: Progress | None = None,
 ) -> Run:
     """Simulate a scenario: its recording and its numbers.
@@ -83,6 +84,7 @@ def run(
     out: a folder for the files that `idc run` writes; nothing is written without.
     force: whether they take the place of old ones.
     recording: whether recording.rrd is among them.
+    mcap: whether recording.mcap is: the samples as messages of ROS 2.
     progress: called with steps done and in all; or a bar of tqdm.
 
     >>> done = run("scenarios/paper_step.toml", set={"bench.duration_s": 2.0})
@@ -91,7 +93,7 @@ def run(
     """
     if isinstance(effects, str):
         effects = (effects,)
-    folder = None if out is None else (out, force, recording)
+    folder = None if out is None else (out, force, recording, mcap)
     inner = _idc.run(load(scenario)._inner, edits(set), list(effects), folder, observer(progress))
     return Run(inner)
 
@@ -104,6 +106,7 @@ def bench(
     out: str | PathLike[str] | None = None,
     force: bool = False,
     recording: bool = True,
+    mcap: bool = False,
     progress: Progress | None = None,
 ) -> Run:
     """As `run`, of the device alone: the scenario of a cell is refused.
@@ -117,7 +120,7 @@ def bench(
             str(loaded.path),
             "kind",
         )
-    return run(loaded, set=set, effects=effects, out=out, force=force, recording=recording, progress=progress)
+    return run(loaded, set=set, effects=effects, out=out, force=force, recording=recording, mcap=mcap, progress=progress)
 
 
 def check(scenario: ScenarioLike) -> dict[str, Any]:
