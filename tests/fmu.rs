@@ -537,10 +537,10 @@ fn a_device_model_is_put_on_a_bench() {
     unit.initialize();
     unit.set_real(at["set_pressure_gauge_pa"], 1.8e5).unwrap();
     unit.step(0.0, 5.0).unwrap();
-    // 1.8 bar on two pistons of 32 mm.
+    // 1.8 bar on two pistons of 32 mm, less what its seals hold.
     let expected = 1.8e5 * std::f64::consts::PI * 0.016 * 0.016 * 2.0;
     let force = unit.real(at["contact_force_n"]).unwrap();
-    assert!((force / expected - 1.0).abs() < 0.02, "{force}");
+    assert!((0.96..1.0).contains(&(force / expected)), "{force}");
 }
 
 #[test]

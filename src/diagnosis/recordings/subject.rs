@@ -299,13 +299,13 @@ mod tests {
                     let free = [free(0, size), free(1, rate)];
                     fit(&evidence, start, (&free, &[]), ROUGH, Limit::of(iterations))
                 };
-                let ended = fitted(size, rate, 40);
-                let further = fitted(ended.values[0], ended.values[1], 1);
-                let gain = ended.cost() - further.cost();
+                let first = fitted(size, rate, 40);
+                let further = fitted(first.values[0], first.values[1], 1);
+                let gain = first.cost() - further.cost();
                 assert!(
-                    gain < 0.01 * ended.cost(),
+                    gain < 0.01 * first.cost(),
                     "from {size}, {rate}: a step gains {gain} of {} that are left",
-                    ended.cost()
+                    first.cost()
                 );
             }
         }
