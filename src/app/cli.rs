@@ -79,6 +79,12 @@ enum Command {
     /// Find what physics the recordings of a rig contain that its model leaves out.
     #[command(after_help = help::DIAGNOSE)]
     Diagnose(super::diagnose::DiagnoseArguments),
+    /// Say what to record next: the experiment that is expected to tell most of what a diagnosis leaves open.
+    #[command(after_help = super::next::EXAMPLES)]
+    Next(super::next::NextArguments),
+    /// Diagnose a rig by experiments of its own choice: its program carries them out, until one explanation is settled.
+    #[command(after_help = super::next::INVESTIGATE_EXAMPLES)]
+    Investigate(super::next::InvestigateArguments),
     /// Write report.html of a folder with results: one page for a browser.
     #[command(after_help = super::report::EXAMPLES)]
     Report(super::report::ReportArguments),
@@ -147,6 +153,8 @@ pub fn execute(cli: &Cli) -> Result<ExitCode, AppError> {
         Command::Import(arguments) => super::import::run(arguments),
         Command::Predict(arguments) => super::predict::predict(arguments),
         Command::Diagnose(arguments) => super::diagnose::run(arguments),
+        Command::Next(arguments) => super::next::run(arguments),
+        Command::Investigate(arguments) => super::next::investigate(arguments),
         Command::Report(arguments) => super::report::run(arguments),
         Command::Compare(arguments) => super::compare::run(arguments),
         Command::Prove(arguments) => super::prove::run(arguments),

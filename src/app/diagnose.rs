@@ -12,7 +12,7 @@ mod outputs;
 mod postures_picture;
 mod removal_picture;
 mod shared;
-mod stages;
+pub(super) mod stages;
 mod unlisted_picture;
 
 use std::path::PathBuf;
@@ -96,7 +96,7 @@ impl DiagnoseArguments {
 }
 
 /// A time with its unit.
-fn duration(text: &str) -> Result<Duration, String> {
+pub(super) fn duration(text: &str) -> Result<Duration, String> {
     let units = [("min", 60.0), ("ms", 1e-3), ("s", 1.0), ("h", 3600.0)];
     let read = units.iter().find_map(|(unit, factor)| {
         let value: f64 = text.strip_suffix(unit)?.trim_end().parse().ok()?;

@@ -53,6 +53,9 @@ pub enum AppError {
         /// What would help.
         advice: Box<Advice>,
     },
+    /// An experiment that cannot be proposed, or a rig's program.
+    #[error(transparent)]
+    Next(#[from] super::next::NextError),
     /// A mesh.
     #[error(transparent)]
     Workpiece(#[from] WorkpieceError),

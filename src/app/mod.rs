@@ -24,6 +24,7 @@ mod import;
 mod interrupt;
 mod manual;
 mod new;
+mod next;
 mod output;
 mod picture;
 mod place;

@@ -19,8 +19,10 @@ use crate::proof::{
     laws_page, page, prove, sweep, write_recipes,
 };
 use crate::quantity::counted;
+use crate::recording::RecordingError;
 use crate::recording::atomic::{UnfinishedFolder, make_folder, write_text};
 use crate::recording::claim::{clear_beside, clear_unfinished};
+use crate::recording::provenance::SourceFile;
 
 /// The cases that come with the project, from its folder.
 const CASES: &str = "assets/proof/cases";
@@ -119,8 +121,11 @@ fn duration(text: &str) -> Result<f64, String> {
 #[derive(Debug, Args)]
 pub(super) struct LaboratoryArguments {
     /// Folder for `cases` and `sealed`.
-    #[arg(long, help_heading = "Output")]
-    out: PathBuf,
+    #[arg(long, help_heading = "Output", required_unless_present = "rig")]
+    out: Option<PathBuf>,
+    /// Instead, be the rig of a case: carry out these inputs on its device and write the recording, as `idc investigate --rig` asks a program to.
+    #[arg(long, num_args = 3, value_names = ["CASE", "IN.csv", "OUT.csv"], conflicts_with = "out")]
+    rig: Option<Vec<PathBuf>>,
     /// Instead, the cases of `idc prove --sweep --laws` of this many: devices with a law each that no list holds.
     #[arg(long, value_parser = clap::value_parser!(u64).range(1..=1000))]
     laws: Option<u64>,
@@ -145,6 +150,17 @@ pub(super) struct LaboratoryArguments {
     /// Print as JSON which cases were written.
     #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
     json: bool,
+}
+
+impl LaboratoryArguments {
+    fn plan(&self, count: u64, conditions: CaseConditions) -> DrawPlan {
+        DrawPlan {
+            count,
+            draw: self.draw,
+            duration: self.duration_s,
+            conditions,
+        }
+    }
 }
 
 /// The program's own diagnosis of a case.
@@ -316,7 +332,10 @@ fn law_plan(count: u64, arguments: &SweepArguments) -> DrawPlan {
 
 /// Writes the project's own cases.
 pub(super) fn run_laboratory(arguments: &LaboratoryArguments) -> Result<ExitCode, AppError> {
-    let out = &arguments.out;
+    if let Some([name, inputs, recording]) = arguments.rig.as_deref() {
+        return carry_out(arguments, &name.display().to_string(), [inputs, recording]);
+    }
+    let out = &arguments.out.clone().unwrap_or_default();
     let [cases, sealed] = ["cases", "sealed"].map(|name| out.join(name));
     if let Some(found) = [&cases, &sealed].into_iter().find(|path| path.exists())
         && !arguments.force
@@ -330,12 +349,7 @@ pub(super) fn run_laboratory(arguments: &LaboratoryArguments) -> Result<ExitCode
     clear_unfinished(out);
     clear_beside(out, &[]);
     let quiet = arguments.quiet || arguments.json;
-    let plan = |count: u64, conditions: CaseConditions| DrawPlan {
-        count,
-        draw: arguments.draw,
-        duration: arguments.duration_s,
-        conditions,
-    };
+    let plan = |count: u64, conditions: CaseConditions| arguments.plan(count, conditions);
     let what = match (arguments.laws, arguments.devices) {
         (Some(count), _) => Which::Laws(plan(count, CaseConditions::Laboratory)),
         (None, Some(count)) => Which::Devices(plan(count, arguments.conditions)),
@@ -353,6 +367,38 @@ pub(super) fn run_laboratory(arguments: &LaboratoryArguments) -> Result<ExitCode
             shown_path(&sealed)
         ))?;
     }
+    Ok(ExitCode::Done)
+}
+
+/// Carries inputs out on the device of a case.
+fn carry_out(
+    arguments: &LaboratoryArguments,
+    name: &str,
+    [inputs, recording]: [&Path; 2],
+) -> Result<ExitCode, AppError> {
+    let recipe = match (arguments.laws, arguments.devices) {
+        (Some(count), _) => arguments
+            .plan(count, CaseConditions::Laboratory)
+            .law_named(name)?,
+        (None, Some(count)) => arguments
+            .plan(count, arguments.conditions)
+            .device_named(name),
+        (None, None) => shipped().into_iter().find(|recipe| recipe.name == name),
+    };
+    let recipe = recipe.ok_or_else(|| ProofError::NoCase {
+        name: name.to_owned(),
+    })?;
+    // Noise of its own for each list of inputs, the same for the same.
+    let bytes = crate::file::read(inputs).map_err(|error| RecordingError::read(inputs, error))?;
+    let turn = SourceFile::holding("", &bytes)
+        .sha256
+        .bytes()
+        .fold(0u64, |sum, byte| {
+            sum.wrapping_mul(31).wrapping_add(u64::from(byte)) % 1_000_003
+        });
+    recipe
+        .carry_out(inputs, recording, 1 + turn)
+        .map_err(ProofError::from)?;
     Ok(ExitCode::Done)
 }
 

@@ -249,6 +249,15 @@ impl Case {
         }
     }
 
+    /// The rig file of a whole device on a bench; none of anything else.
+    #[must_use]
+    pub fn bench_rig(&self) -> Option<&RigFile> {
+        match &self.kind {
+            Kind::Rig { rig, .. } if rig.plant.parts == DeviceParts::Whole => Some(rig),
+            _ => None,
+        }
+    }
+
     fn rig_source(&self) -> (String, PathBuf) {
         match &self.kind {
             Kind::Rig { rig, .. } | Kind::Flange { rig, .. } => (RIG.to_owned(), rig.path.clone()),

@@ -1,6 +1,11 @@
 //! Experiments that a bench can do, within what its recordings show that it does.
 
+pub mod choice;
+pub mod information;
+pub mod limits;
 pub mod next_experiment;
+mod open;
+pub mod programme;
 
 use super::recordings::evidence::Evidence;
 use crate::plant::{InitialState, PlantInputs, PlantParameters};
@@ -18,7 +23,7 @@ pub struct Experiment {
 }
 
 /// Behaviour of the device in its recordings.
-struct Limits {
+struct Reach {
     /// Step of the samples [s].
     step: f64,
     /// Highest set pressure [Pa gauge].
@@ -29,7 +34,7 @@ struct Limits {
     travel: f64,
 }
 
-impl Limits {
+impl Reach {
     fn new(evidence: &Evidence, plant: &PlantParameters) -> Self {
         let inputs = || evidence.recordings.iter().map(|m| &m.inputs);
         let stroke = plant.device.full_stroke;
@@ -89,14 +94,14 @@ fn first_half(time: f64, each: f64) -> bool {
 /// The experiments for a bench.
 #[must_use]
 pub fn experiments(evidence: &Evidence, plant: &PlantParameters) -> Vec<Experiment> {
-    let limits = Limits::new(evidence, plant);
+    let limits = Reach::new(evidence, plant);
     let [ramp, steps, dwell] = limits.at_a_fixed_surface();
     let [strokes, reversals] = limits.without_a_workpiece();
     let [slow, fast] = limits.on_a_moved_surface();
     vec![ramp, steps, strokes, reversals, slow, fast, dwell]
 }
 
-impl Limits {
+impl Reach {
     fn at_a_fixed_surface(&self) -> [Experiment; 3] {
         let (top, surface) = (self.pressure, self.surface);
         let high = bar(top);

@@ -176,6 +176,22 @@ impl Recipe {
         })
     }
 
+    /// Readings of the device in a programme, with noise of its own, by the turn.
+    pub(super) fn record(
+        &self,
+        programme: &Programme,
+        turn: u64,
+    ) -> Result<[Vec<f64>; CHANNELS.len()], LaboratoryError> {
+        let setting = self.setting()?;
+        // What differs from recording to recording is drawn anew, beyond those that the case has.
+        let place = setting.programmes.len() + turn as usize;
+        let concealed = (setting.conditions).in_recording(&setting.concealed, setting.seed, place);
+        let trajectory = run(&setting.pair.real, &concealed, programme)?;
+        let noise = (setting.nominal.rig.noise).map(|sheet| self.conditions.noise * sheet);
+        let mut measured = self.measure(noise, &[trajectory], turn);
+        Ok(measured.swap_remove(0))
+    }
+
     /// The device as it really is, what is concealed in it, and what is done with it.
     ///
     /// # Errors

@@ -130,10 +130,8 @@ impl NominalRig {
             }
             commands
         };
-        let still = Surface {
-            middle: as_printed(rig.stroke * rng.random_range(0.35..0.6), 4),
-            waves: Vec::new(),
-        };
+        let place = as_printed(rig.stroke * rng.random_range(0.35..0.6), 4);
+        let still = Surface::Waves(place, Vec::new());
         let moved = |rng: &mut ChaCha8Rng| {
             let middle = rig.stroke * rng.random_range(0.42..0.58);
             let waves = [0.25, 0.7, 1.9].map(|frequency: f64| {
@@ -144,10 +142,7 @@ impl NominalRig {
                     phase: rng.random_range(0.0..std::f64::consts::TAU),
                 }
             });
-            Surface {
-                middle,
-                waves: waves.to_vec(),
-            }
+            Surface::Waves(middle, waves.to_vec())
         };
         let stairs = steps(rng, [0.35, 0.6]);
         let ride_surface = moved(rng);

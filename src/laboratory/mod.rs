@@ -9,6 +9,7 @@
 //! programme -> device (with something concealed) -> sensors -> recordings + rig file + sealed truth
 //! ```
 
+mod carried_out;
 mod case;
 mod concealed;
 mod conditions;
@@ -28,6 +29,7 @@ mod trajectory;
 mod visibility;
 mod write;
 
+pub use carried_out::RigError;
 pub use case::{LaboratoryCase, Recipe, Session};
 pub use concealed::{Concealed, Seals, Swing};
 pub use conditions::Conditions;
@@ -36,7 +38,7 @@ pub use draw::{NominalRig, TOLERANCES};
 pub use effects::{EFFECTS, LabEffect, UNLISTED_EFFECTS};
 pub use law::{Driver, Form, Law, Place};
 pub use law_draw::law_case;
-pub use programme::{Programme, Surface, Wave};
+pub use programme::{Programme, Sampled, Surface, Wave};
 pub use recipes::{LOST, shipped, sizes};
 pub use rig::{AIR, Gas, LaboratoryRig};
 pub use sealed::{Known, SealedCase, SealedEffect, SealedInterval};

@@ -38,7 +38,11 @@ pub fn write_case(
         &rig_text(&case.nominal, &names, &unseen.name),
     )?;
     for (programme, values) in seen.iter().zip(&case.measured) {
-        write_measured(programme, values, folder)?;
+        write_measured(
+            programme,
+            values,
+            &folder.join(format!("{}.csv", programme.name)),
+        )?;
     }
     let path = folder.join(format!("{}.csv", unseen.name));
     write_csv(&path, &unseen.times, &named(&inputs(unseen)))?;
@@ -73,7 +77,11 @@ pub fn write_session(
 ) -> Result<(), RecordingError> {
     fs::create_dir_all(folder).map_err(|cause| RecordingError::write(folder, cause))?;
     for (programme, values) in session.programmes.iter().zip(&session.measured) {
-        write_measured(programme, values, folder)?;
+        write_measured(
+            programme,
+            values,
+            &folder.join(format!("{}.csv", programme.name)),
+        )?;
     }
     let names: Vec<&str> = session.programmes.iter().map(|p| p.name.as_str()).collect();
     match rig {
@@ -82,16 +90,16 @@ pub fn write_session(
     }
 }
 
-fn write_measured(
+/// Writes what a device was asked for and what was measured of it.
+pub(super) fn write_measured(
     programme: &Programme,
     values: &[Vec<f64>; 4],
-    folder: &Path,
+    path: &Path,
 ) -> Result<(), RecordingError> {
     let inputs = inputs(programme);
     let mut columns = named(&inputs);
     columns.extend((CHANNELS.iter().zip(values)).map(|(name, v)| (*name, v.as_slice())));
-    let path = folder.join(format!("{}.csv", programme.name));
-    write_csv(&path, &programme.times, &columns)
+    write_csv(path, &programme.times, &columns)
 }
 
 fn inputs(programme: &Programme) -> [Vec<f64>; 3] {

@@ -26,6 +26,7 @@ mod mounting;
 mod nominal;
 mod nudging;
 mod observation;
+mod operating_limits;
 mod own_law;
 mod parameters;
 mod parts;
@@ -57,6 +58,7 @@ pub use mounting::Mounting;
 pub use nominal::{Actual, Nominal};
 pub use nudging::Nudging;
 pub use observation::Observation;
+pub use operating_limits::OperatingLimits;
 pub use own_law::{
     BRISTLE_STIFFNESS, Constant, Expression, ExpressionError, LawText, MOST_CONSTANTS, OwnLaw,
     SYMBOLS, Symbol, USUAL_BRISTLE_STIFFNESS, Unit, kept_name,

@@ -56,6 +56,14 @@ impl DrawPlan {
         }
     }
 
+    /// A device by the name of its case; none that the plan does not have.
+    #[must_use]
+    pub fn device_named(&self, name: &str) -> Option<Recipe> {
+        let seeds = (0..).zip(self.seeds(FIRST_SEED));
+        let mut recipes = seeds.map(|(index, seed)| self.device(index, seed));
+        recipes.find(|recipe| recipe.name == name)
+    }
+
     /// Writes devices with and without an effect into `cases` and their truth into `sealed`; `say` gets how many are written, of how many. Returns their names.
     ///
     /// # Errors

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::laboratory::LaboratoryError;
+use crate::laboratory::{LaboratoryError, RigError};
 use crate::recording::RecordingError;
 
 /// A proof that cannot be done.
@@ -16,6 +16,17 @@ pub enum ProofError {
         /// Names that were asked for.
         only: Vec<String>,
     },
+    /// No case of a name.
+    #[error(
+        "the laboratory has no case `{name}`, expected one of those that it writes with the same --devices or --laws, --draw and --duration-s"
+    )]
+    NoCase {
+        /// The name.
+        name: String,
+    },
+    /// A device of the laboratory that does not carry out what it is asked for.
+    #[error(transparent)]
+    Rig(#[from] RigError),
     /// A file cannot be read.
     #[error("cannot read {}: {cause}", path.display())]
     Read {

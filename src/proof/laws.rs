@@ -102,6 +102,18 @@ impl DrawPlan {
         })
     }
 
+    /// A device with a law by the name of its case; none that the plan does not have.
+    ///
+    /// # Errors
+    /// No law will do.
+    pub fn law_named(&self, name: &str) -> Result<Option<Recipe>, ProofError> {
+        let mut cases = self.cases().into_iter();
+        let found = cases.find(|(own, _)| own == name);
+        found
+            .map(|(name, seed)| self.recipe(&name, seed))
+            .transpose()
+    }
+
     fn made(&self, seed: u64) -> Made {
         Made {
             effect: Some("law".to_owned()),

@@ -76,7 +76,7 @@ pub(super) fn run(
     let work = |reporter: &mut super::call::Reporter| {
         let scenario = edited(scenario, set, &effects)?;
         scenario.run(folder.as_ref(), &mut |done, total| {
-            reporter.report(done, total)
+            reporter.report(done, total);
         })
     };
     detached(py, progress, work).map(Run)

@@ -7,6 +7,7 @@
 //! [rig]  chain = "moved_piston"                a part of the device ([`crate::plant::Chain`]); only that part's numbers are then asked for
 //! [[effect]]                                   physics beyond the nominal model (`super::effects`)
 //! [shares]  force_sensor = "LC-7"              a part that other rigs have too, by its serial number ([`Shares`])
+//! [limits]                                     how far an experiment may move the rig
 //! [known]                                      how sure a diagnosis is of it, and what its recordings covered (`known`)
 //! [latent]                                     physics that no known effect explains (`latent`)
 //! [flange]                                     a contact flange as it was fitted to runs (`flange`)
@@ -19,9 +20,9 @@ use crate::effects::{PresentEffect, candidates};
 use crate::flange::FittedFlange;
 use crate::keys::document::{Document, read_text};
 use crate::keys::error::ScenarioError;
-use crate::plant::PlantParameters;
+use crate::plant::{OperatingLimits, PlantParameters};
 use keys::{RigKeys, sections};
-use values::{check_together, pressure_drift, recordings, sensors, shares};
+use values::{check_together, limits, pressure_drift, recordings, sensors, shares};
 
 mod entry;
 mod flange;
@@ -36,7 +37,7 @@ pub(super) mod tests;
 mod values;
 
 pub use improved::{Improved, improved_text};
-pub(super) use keys::{PartKeys, RecordingsKeys, SharesKeys};
+pub(super) use keys::{LimitsKeys, PartKeys, RecordingsKeys, SharesKeys};
 pub use known::{FREQUENCY_NAME, Known, coefficient_name, of_term};
 pub(super) use quantities::described_numbers;
 pub use values::{RecordingForceRamp, Shares, Tolerance};
@@ -76,6 +77,8 @@ pub struct RigFile {
     pub bare: PlantParameters,
     /// Parts that other rigs may have too.
     pub shares: Shares,
+    /// How far it may be moved.
+    pub limits: OperatingLimits,
     /// How sure a diagnosis is of it, and what its recordings covered.
     pub known: Option<Known>,
     /// A contact flange as a diagnosis has fitted it.
@@ -121,6 +124,7 @@ pub fn from_text(path: &Path, text: &str) -> Result<RigFile, ScenarioError> {
     let (rate, noise) = sensors(&document, &keys, plant.parts)?;
     let pressure_drift = pressure_drift(&document, &keys)?;
     let shares = shares(&document, keys.shares)?;
+    let limits = limits(&document, &keys.limits)?;
     let recordings = recordings(&document, keys.recordings, plant.parts)?;
     Ok(RigFile {
         path: path.to_owned(),
@@ -136,6 +140,7 @@ pub fn from_text(path: &Path, text: &str) -> Result<RigFile, ScenarioError> {
         effects,
         bare,
         shares,
+        limits,
         known,
         flange,
     })

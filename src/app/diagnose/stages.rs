@@ -25,7 +25,7 @@ fn place(step: Step) -> (usize, Option<f64>) {
 }
 
 /// Words before the recordings are read.
-pub(super) fn first() -> String {
+pub(in super::super) fn first() -> String {
     words(0)
 }
 
@@ -35,7 +35,7 @@ fn words(stage: usize) -> String {
 
 /// Furthest step of a diagnosis so far.
 #[derive(Debug, Default)]
-pub(super) struct Stages {
+pub(in super::super) struct Stages {
     furthest: Option<Step>,
 }
 
@@ -46,7 +46,7 @@ impl Stages {
     }
 
     /// Words for a message, and the share of the whole that lies behind [1] if it is the first of a further step.
-    pub(super) fn shown(&mut self, progress: &Progress<'_>) -> (String, Option<f64>) {
+    pub(in super::super) fn shown(&mut self, progress: &Progress<'_>) -> (String, Option<f64>) {
         let step = self.furthest.max(Some(progress.step));
         let further = step > self.furthest;
         self.furthest = step;

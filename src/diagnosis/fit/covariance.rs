@@ -72,7 +72,7 @@ fn blocks<S: Subject>(evidence: &Evidence<S>, fit: &Fit<S>) -> Vec<DVector<f64>>
 }
 
 /// Inverse of an information matrix, scaled first; what is not determined at all gets a large variance.
-fn inverse(information: &DMatrix<f64>) -> DMatrix<f64> {
+pub fn inverse(information: &DMatrix<f64>) -> DMatrix<f64> {
     let count = information.nrows();
     let scale: Vec<f64> = (0..count)
         .map(|i| 1.0 / information[(i, i)].max(1e-12).sqrt())

@@ -46,6 +46,8 @@ pub(super) struct RigKeys {
     pub latent: Option<BTreeMap<String, Entry>>,
     #[serde(default)]
     pub shares: SharesKeys,
+    #[serde(default)]
+    pub limits: LimitsKeys,
     pub known: Option<KnownKeys>,
     pub flange: Option<FlangeKeys>,
 }
@@ -65,6 +67,24 @@ keys! {
         force_sensor: Option<String> = "force_sensor";
         /// identity of the pressure regulator
         regulator: Option<String> = "regulator";
+    }
+
+    /// `[limits]`: how far an experiment may move the rig; what is not stated, no farther than the recordings did.
+    pub(in super::super) struct LimitsKeys: Default {
+        /// largest set pressure, gauge
+        set_pressure: Option<f64> = "set_pressure_pa" in 0.0..=1.6e6;
+        /// largest rate of the set pressure
+        set_pressure_rate: Option<f64> = "set_pressure_rate_pa_per_s" in 1.0..=1e12;
+        /// where the surface may stand along the stroke, at least
+        surface_least: Option<f64> = "surface_least_m" in 0.0..=2.0;
+        /// where it may stand at most
+        surface_most: Option<f64> = "surface_most_m" in 0.0..=2.0;
+        /// largest speed of the surface
+        surface_speed: Option<f64> = "surface_speed_m_per_s" in 0.0..=10.0;
+        /// largest force on the part
+        force: Option<f64> = "force_n" in 0.0..=1e5;
+        /// longest recording
+        duration: Option<f64> = "duration_s" in 0.5..=3600.0;
     }
 
     /// `[recordings]`.
@@ -125,6 +145,7 @@ pub(super) fn sections() -> Vec<(String, Vec<&'static str>)> {
             names_of::<RecordingsKeys>().to_vec(),
         ),
         ("shares".to_owned(), names_of::<SharesKeys>().to_vec()),
+        ("limits".to_owned(), names_of::<LimitsKeys>().to_vec()),
         ("known".to_owned(), names_of::<KnownKeys>().to_vec()),
         ("flange".to_owned(), names_of::<FlangeKeys>().to_vec()),
         ("flange.fit".to_owned(), FlangeModel::NAMES.to_vec()),

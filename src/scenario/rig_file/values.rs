@@ -2,7 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::keys::{ForceRampKeys, Numbers, RecordingsKeys, RigKeys, SharesKeys, sections};
+use super::keys::{
+    ForceRampKeys, LimitsKeys, Numbers, RecordingsKeys, RigKeys, SharesKeys, sections,
+};
 use super::number::Number;
 use super::quantities::{DRIFT, NUMBERS, SENSOR_KEYS, needs, split};
 use crate::keys::check::{Section, checked, plain};
@@ -10,7 +12,7 @@ use crate::keys::declaration::Table;
 use crate::keys::document::Document;
 use crate::keys::error::ScenarioError;
 use crate::keys::suggestion::{advice, join};
-use crate::plant::{DeviceParts, PlantParameters, Quantity, registry};
+use crate::plant::{DeviceParts, OperatingLimits, PlantParameters, Quantity, registry};
 use crate::unit::Unit;
 
 /// A number of the rig that is not exactly known.
@@ -296,6 +298,28 @@ pub(super) fn shares(document: &Document<'_>, keys: SharesKeys) -> Result<Shares
         }
     }
     Ok(Shares(shares))
+}
+
+/// How far the rig may be moved.
+pub(super) fn limits(
+    document: &Document<'_>,
+    keys: &LimitsKeys,
+) -> Result<OperatingLimits, ScenarioError> {
+    let section = Section::new(document, "limits");
+    if let (Some(least), Some(most)) = (keys.surface_least, keys.surface_most)
+        && least > most
+    {
+        let expected = format!("at least surface_least_m, {least}");
+        return Err(section.refuse("surface_most_m", most.to_string(), expected));
+    }
+    Ok(OperatingLimits {
+        set_pressure: keys.set_pressure,
+        set_pressure_rate: keys.set_pressure_rate,
+        surface: [keys.surface_least, keys.surface_most],
+        surface_speed: keys.surface_speed,
+        force: keys.force,
+        duration: keys.duration,
+    })
 }
 
 /// The force commanded of a contact flange before contact, and how it grows to the desired one after it.

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::super::rig_file::{PartKeys, RecordingsKeys, SharesKeys, described_numbers};
+use super::super::rig_file::{LimitsKeys, PartKeys, RecordingsKeys, SharesKeys, described_numbers};
 use crate::effects::candidates;
 use crate::keys::declaration::Filled;
 use crate::keys::schema::DIALECT;
@@ -27,6 +27,7 @@ pub fn schema() -> Value {
     tables.insert("rig".to_owned(), part);
     tables.insert("recordings".to_owned(), RecordingsKeys::schema());
     tables.insert("shares".to_owned(), SharesKeys::schema());
+    tables.insert("limits".to_owned(), LimitsKeys::schema());
     let effects = DeviceParts::ALL.into_iter().flat_map(candidates);
     tables.insert("effect".to_owned(), super::super::effects::schema(effects));
     tables.insert(

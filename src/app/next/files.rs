@@ -1,0 +1,138 @@
+//! The files of an experiment: inputs as a table, a bench that carries them out, next.json.
+
+use std::fmt::Write as _;
+
+use serde_json::{Value, json};
+
+use super::super::error::AppError;
+use super::super::files::REPORT;
+use super::Proposal;
+use crate::diagnosis::experiment::programme::HOLD;
+use crate::recording::csv::columns_text;
+
+pub(super) const INPUTS: &str = "inputs.csv";
+pub(super) const BENCH: &str = "bench.toml";
+/// The best explanation, which the bench takes as its device.
+pub(super) const DEVICE: &str = "device.toml";
+pub(super) const INSTRUCTIONS: &str = "instructions.txt";
+pub(super) const EXPECTED: &str = "expected.svg";
+pub(super) const NEXT: &str = "next.json";
+/// All of them.
+pub(super) const NAMES: [&str; 7] = [INPUTS, BENCH, DEVICE, INSTRUCTIONS, EXPECTED, REPORT, NEXT];
+/// Columns of the inputs, as a recording has them.
+pub(super) const COLUMNS: [&str; 3] = ["set_pressure_pa", "solenoid", "surface_m"];
+
+/// Inputs with their times.
+pub(super) fn inputs(proposal: &Proposal) -> Result<String, AppError> {
+    let inputs = proposal.chosen.programme.inputs(&proposal.limits);
+    let solenoid: Vec<f64> = inputs
+        .extends
+        .iter()
+        .map(|e| f64::from(u8::from(*e)))
+        .collect();
+    // A clock's digits, not those of a sum.
+    let time: Vec<f64> = inputs
+        .time
+        .iter()
+        .map(|t| (t * 1e9).round() / 1e9)
+        .collect();
+    let [pressure, valve, surface] = COLUMNS;
+    let columns: [(&str, &[f64]); 3] = [
+        (pressure, &inputs.set_pressure),
+        (valve, &solenoid),
+        (surface, &inputs.surface),
+    ];
+    Ok(columns_text(&time, &columns)?)
+}
+
+/// A bench that carries the experiment out with the best explanation as its device.
+pub(super) fn bench(proposal: &Proposal, case: &str) -> String {
+    let programme = &proposal.chosen.programme;
+    let plain = |letter: &char| letter.is_alphanumeric() || " _-.".contains(*letter);
+    let name: String = case.chars().filter(plain).collect();
+    let commands = programme.commands(&proposal.limits);
+    let mut text = format!(
+        "# Written by idc next: the experiment on a bench, its device the best explanation so far.\nschema = 2\nkind = \"bench\"\ntitle = \"Next experiment of {name}\"\n\n[device]\nmodel = \"{DEVICE}\"\n\n[bench]\nduration_s = {}\n",
+        commands.len() as f64 * HOLD
+    );
+    // Writing into a text cannot fail.
+    let _ = match &programme.surface {
+        None => write!(text, "\n[load]\nkind = \"free\"\n"),
+        Some(own) if own.peak_to_peak < 1e-6 => write!(
+            text,
+            "\n[load]\nkind = \"load_cell\"\nposition_mm = {:.4}\n",
+            own.position * 1e3
+        ),
+        Some(own) => write!(
+            text,
+            "\n[load]\nkind = \"surface\"\nposition_mm = {:.4}\npeak_to_peak_mm = {:.4}\nfrequency_hz = {:.4}\nstart_s = {:.3}\n",
+            own.position * 1e3,
+            own.peak_to_peak * 1e3,
+            own.frequency,
+            own.start
+        ),
+    };
+    let at = |index: usize| (index as f64 * HOLD * 1e3).round() / 1e3;
+    let mut last = None;
+    for (index, (pressure, _)) in commands.iter().enumerate() {
+        if last != Some(*pressure) {
+            last = Some(*pressure);
+            let _ = write!(
+                text,
+                "\n[[command]]\nat_s = {}\nset_pressure_bar_gauge = {:.5}\n",
+                at(index),
+                pressure * 1e-5
+            );
+        }
+    }
+    let mut extended = true;
+    for (index, (_, extends)) in commands.iter().enumerate() {
+        if *extends != extended {
+            extended = *extends;
+            let position = if *extends { "extend" } else { "retract" };
+            let _ = write!(
+                text,
+                "\n[[valve]]\nat_s = {}\nposition = \"{position}\"\n",
+                at(index)
+            );
+        }
+    }
+    text
+}
+
+/// next.json.
+pub(super) fn json(proposal: &Proposal) -> Value {
+    let Proposal {
+        open,
+        none_of_these,
+        chosen,
+        ..
+    } = proposal;
+    let explanations: Vec<Value> = (open.iter().zip(&chosen.expected.odds))
+        .map(|(own, odds)| {
+            let then = odds
+                .iter()
+                .zip(open)
+                .map(|(p, other)| json!({ "effects": other.name, "probability": round(*p) }));
+            json!({
+                "effects": own.name,
+                "probability": round(own.probability),
+                "expected_if_true": then.collect::<Vec<_>>(),
+            })
+        })
+        .collect();
+    json!({
+        "duration_s": chosen.programme.duration(),
+        "explanations": explanations,
+        "none_of_these": round(*none_of_these),
+        "expected_probability_of_the_truth": round(proposal.expected_probability()),
+        "information_on_which_nat": round(chosen.expected.which),
+        "information_on_how_much_nat": round(chosen.expected.how_much),
+        "largest_force_n": (chosen.force * 10.0).round() / 10.0,
+        "instructions": chosen.programme.instructions(),
+    })
+}
+
+fn round(value: f64) -> f64 {
+    (value * 1e4).round() / 1e4
+}

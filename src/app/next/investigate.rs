@@ -1,0 +1,412 @@
+//! `idc investigate`: a diagnosis that asks a rig its own questions, until it is sure or no allowed experiment would make it so.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use serde_json::{Value, json};
+use toml_edit::{Array, DocumentMut, value};
+
+use super::super::error::{AppError, ExitCode};
+use super::super::files::{OutputFolder, OverwritePolicy, REPORT, output_folder};
+use super::super::interrupt::Interruptible;
+use super::super::output::say;
+use super::super::progress;
+use super::rig_program::{Reply, RigProgram, check_inputs};
+use super::{Allowed, NextError, Proposal, bench_rig, diagnosed, files, within};
+use crate::case::{Case, Diagnosed, IMPROVED, RIG, read_rig, rig_of, to_fit};
+use crate::diagnosis::experiment::information::Open;
+use crate::document::{Block, Cell, Column, Document, Section, Style, Table, Tone, html, text};
+use crate::plant::DeviceParts;
+use crate::quantity::percent;
+use crate::recording::RecordingError;
+use crate::recording::atomic::{make_folder, write_text};
+
+/// For the help.
+pub(in super::super) const EXAMPLES: &str = "\
+The recordings of a rig are diagnosed, the experiment is chosen that is expected
+to tell most of what they leave open, and the rig's program is called with its
+inputs: PROGRAM IN.csv OUT.csv. Its recording joins the others, and so on until
+one explanation is as probable as --until asks, or nothing that is allowed would
+settle it. IN.csv has columns time_s, set_pressure_pa, solenoid, surface_m; OUT.csv
+those and what was measured. Exit codes of the program: 0 recorded, 3 these inputs
+are refused, 4 try again. Exit codes here: 0 settled, or nothing is missing; 1 it
+stays open; 2 bad input.
+
+The folder case/ of the results holds all recordings with their rig.toml: `idc
+diagnose` of it comes to the same from the beginning.
+
+Examples:
+  # A rig that a script drives. (takes minutes)
+  idc investigate assets/proof/cases/case-03 --rig ./my_rig --out runs/asked";
+
+const RECORD: &str = "investigation.json";
+const CASE: &str = "case";
+const NAMES: [&str; 3] = [IMPROVED, REPORT, RECORD];
+/// Experiments that a rig may refuse, and repetitions that it may ask for, in a row.
+const TRIES: usize = 4;
+/// By how much the largest force is lowered where a rig refuses [1].
+const GENTLER: f64 = 0.7;
+/// Information from which an experiment is worth its while [nat].
+const WORTH: f64 = 0.02;
+
+#[derive(Debug, Args)]
+pub(in super::super) struct InvestigateArguments {
+    /// Folder with rig.toml and the recordings that it names.
+    case: PathBuf,
+    /// Program of the rig, called as PROGRAM IN.csv OUT.csv.
+    #[arg(long, value_name = "PROGRAM")]
+    rig: PathBuf,
+    #[command(flatten)]
+    allowed: Allowed,
+    /// Probability at which the best explanation counts as settled.
+    #[arg(long, default_value_t = 0.95, value_parser = probability)]
+    until: f64,
+    /// Recordings at most.
+    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    runs: u32,
+    /// Time that the rig's program may take for a recording.
+    #[arg(long, value_name = "TIME", default_value = "5min", value_parser = super::super::diagnose::duration)]
+    patience: Duration,
+    /// Folder for case, run-1 and so on, improved.toml, report.html and investigation.json [default: runs/<name of the case's folder>].
+    #[arg(long, help_heading = "Output")]
+    out: Option<PathBuf>,
+    /// Put new results in place of old ones.
+    #[arg(long, help_heading = "Output")]
+    force: bool,
+    /// Print nothing but errors.
+    #[arg(long, help_heading = "Output")]
+    quiet: bool,
+    /// Print what investigation.json holds instead of the text.
+    #[arg(long, conflicts_with = "quiet", help_heading = "Output")]
+    json: bool,
+}
+
+fn probability(text: &str) -> Result<f64, String> {
+    let value = text.parse().ok().filter(|p| (0.5..1.0).contains(p));
+    value.ok_or_else(|| "expected a probability from 0.5 to below 1".to_owned())
+}
+
+/// Odds at a time of the investigation.
+struct Odds {
+    open: Vec<(String, f64)>,
+    none_of_these: f64,
+}
+
+/// A recording that was asked for.
+struct Asked {
+    name: String,
+    duration: f64,
+    expected: f64,
+    instructions: Vec<String>,
+}
+
+/// Why it stops.
+enum Stop {
+    Settled,
+    NothingMissing,
+    NoExperiment,
+    Runs,
+}
+
+impl Stop {
+    fn words(&self) -> &'static str {
+        match self {
+            Self::Settled => "settled",
+            Self::NothingMissing => "nothing is missing",
+            Self::NoExperiment => "no allowed experiment would tell more",
+            Self::Runs => "as many recordings as --runs allows",
+        }
+    }
+}
+
+impl Odds {
+    fn of(open: &[Open], none_of_these: f64) -> Self {
+        let named = |own: &Open| (own.name.clone(), own.probability);
+        Self {
+            open: open.iter().map(named).collect(),
+            none_of_these,
+        }
+    }
+
+    fn json(&self) -> Value {
+        let round = |p: f64| (p * 1e4).round() / 1e4;
+        let own = self
+            .open
+            .iter()
+            .map(|(name, p)| json!({ "effects": name, "probability": round(*p) }));
+        json!({ "explanations": own.collect::<Vec<_>>(), "none_of_these": round(self.none_of_these) })
+    }
+
+    fn probability(&self, name: &str) -> Option<f64> {
+        self.open
+            .iter()
+            .find(|(own, _)| own == name)
+            .map(|(_, p)| *p)
+    }
+}
+
+/// The case that grows: rig file and recordings in a folder of their own.
+struct Growth {
+    folder: PathBuf,
+    text: String,
+    names: Vec<String>,
+}
+
+impl Growth {
+    fn of(case: &Path, folder: PathBuf) -> Result<Self, AppError> {
+        let rig = rig_of(case)?;
+        let names = to_fit(&rig, case)?;
+        make_folder(&folder).map_err(|error| RecordingError::write(&folder, error))?;
+        for name in &names {
+            let cause = |error: std::io::Error| RecordingError::write(&folder.join(name), error);
+            std::fs::copy(case.join(name), folder.join(name)).map_err(cause)?;
+        }
+        let text = crate::file::read_text(&case.join(RIG))
+            .map_err(|error| RecordingError::read(&case.join(RIG), error))?;
+        let growth = Self {
+            folder,
+            text,
+            names,
+        };
+        growth.write()?;
+        Ok(growth)
+    }
+
+    /// Its rig file, with all recordings.
+    fn write(&self) -> Result<(), AppError> {
+        let mut document: DocumentMut = self.text.parse().unwrap_or_default();
+        let names: Array = self.names.iter().map(String::as_str).collect();
+        document["recordings"]["fit"] = value(names);
+        if let Some(table) = document["recordings"].as_table_like_mut() {
+            table.remove("predict");
+        }
+        Ok(write_text(&self.folder.join(RIG), &document.to_string())?)
+    }
+
+    fn add(&mut self, name: String, recording: &Path) -> Result<(), AppError> {
+        let to = self.folder.join(&name);
+        std::fs::copy(recording, &to).map_err(|error| RecordingError::write(&to, error))?;
+        self.names.push(name);
+        self.write()
+    }
+}
+
+/// Asks until it is settled.
+pub(in super::super) fn investigate(
+    arguments: &InvestigateArguments,
+) -> Result<ExitCode, AppError> {
+    let silent = arguments.quiet || arguments.json;
+    let case = Case::from_folder(&arguments.case)?;
+    bench_rig(&case)?;
+    let out = output_folder(arguments.out.as_ref(), &arguments.case);
+    let folder = OutputFolder::prepare(&out, &NAMES, OverwritePolicy::of(arguments.force))?;
+    let _interruptible = Interruptible::of_one("investigation", &out);
+    let program = RigProgram {
+        program: arguments.rig.clone(),
+        patience: arguments.patience,
+    };
+    let start = Instant::now();
+    let mut growth = Growth::of(&arguments.case, out.join(CASE))?;
+    let mut odds: Vec<Odds> = Vec::new();
+    let mut asked: Vec<Asked> = Vec::new();
+    let (stop, found) = loop {
+        let case = Case::from_folder(&growth.folder)?;
+        let found = diagnosed(&case, silent)?;
+        let Some(diagnosis) = &found.diagnosis else {
+            return Err(NextError::NoBench { case: case.name }.into());
+        };
+        let open = diagnosis.open();
+        odds.push(Odds::of(&open, diagnosis.none_of_these()));
+        let is_sure = open[0].probability >= arguments.until;
+        let is_nothing = diagnosis.best().finds_nothing();
+        let spent = asked.len() == arguments.runs as usize;
+        match (is_sure, is_nothing, spent) {
+            (true, true, _) => break (Stop::NothingMissing, found),
+            (true, false, _) => break (Stop::Settled, found),
+            (false, _, true) => break (Stop::Runs, found),
+            (false, _, false) => (),
+        }
+        let number = asked.len() + 1;
+        let Some(next) = ask(arguments, (&case, &found), (&program, &out, number), silent)? else {
+            break (Stop::NoExperiment, found);
+        };
+        growth.add(
+            next.name.clone(),
+            &out.join(format!("run-{number}")).join(RECORDING),
+        )?;
+        asked.push(next);
+    };
+    let record = record(&stop, &odds, &asked, start.elapsed().as_secs_f64(), &found);
+    let page = page(&stop, &odds, &asked, &case.name);
+    let document = format!("{record:#}\n");
+    let texts = [
+        (IMPROVED, found.improved.as_str()),
+        (REPORT, &html(&page)),
+        (RECORD, &document),
+    ];
+    folder.write_texts(&NAMES, &texts)?;
+    if arguments.json {
+        say(&document)?;
+    } else if !arguments.quiet {
+        say(&text(&page, Style::Plain))?;
+    }
+    Ok(match stop {
+        Stop::Settled | Stop::NothingMissing => ExitCode::Done,
+        Stop::NoExperiment | Stop::Runs => ExitCode::OutsideBounds,
+    })
+}
+
+/// The recording of a run in its folder.
+const RECORDING: &str = "recording.csv";
+
+/// Chooses an experiment and has it carried out; none where nothing that is allowed would tell enough.
+fn ask(
+    arguments: &InvestigateArguments,
+    (case, found): (&Case, &Diagnosed),
+    (program, out, number): (&RigProgram, &Path, usize),
+    silent: bool,
+) -> Result<Option<Asked>, AppError> {
+    let allowed = &arguments.allowed;
+    let Some(diagnosis) = &found.diagnosis else {
+        return Ok(None);
+    };
+    let name = format!("run-{number}");
+    let run = out.join(&name);
+    let (mut force, mut said, mut again) = (None, String::new(), 0);
+    let mut refusals = 0;
+    while refusals < TRIES {
+        let bar = progress::bar("choosing", silent);
+        let seed = allowed.seed + 1000 * number as u64 + refusals as u64;
+        let proposal = Proposal::of(case, diagnosis, (allowed, seed, force), &mut |done, all| {
+            progress::tell(&bar, done, all);
+        });
+        bar.finish_and_clear();
+        let proposal = proposal?;
+        let gained = proposal.chosen.expected.which;
+        if proposal.open.len() < 2 || gained < WORTH {
+            return Ok(None);
+        }
+        let policy = OverwritePolicy::of(arguments.force || refusals > 0);
+        let folder = OutputFolder::prepare_within(&run, &files::NAMES, policy)?;
+        super::write(&folder, &proposal, &found.improved, &case.name)?;
+        let recording = within(&run, RECORDING);
+        // What an earlier investigation left there is no answer.
+        let _ = std::fs::remove_file(&recording);
+        loop {
+            match program.call(&within(&run, files::INPUTS), &recording)? {
+                Reply::Recorded => {
+                    let read = read_rig(DeviceParts::Whole, &recording)?;
+                    let inputs = proposal.chosen.programme.inputs(&proposal.limits);
+                    check_inputs(&recording, &read, &inputs)?;
+                    return Ok(Some(Asked {
+                        name: format!("{name}.csv"),
+                        duration: proposal.chosen.programme.duration(),
+                        expected: proposal.expected_probability(),
+                        instructions: proposal.chosen.programme.instructions(),
+                    }));
+                }
+                Reply::Again if again + 1 < TRIES => again += 1,
+                Reply::Again => {
+                    refusals += 1;
+                    again = 0;
+                    break;
+                }
+                Reply::Refuses(why) => {
+                    said = why;
+                    refusals += 1;
+                    force = Some(GENTLER * force.unwrap_or(proposal.limits.force));
+                    break;
+                }
+            }
+        }
+    }
+    Err(program.refused(refusals, said).into())
+}
+
+fn record(stop: &Stop, odds: &[Odds], asked: &[Asked], seconds: f64, found: &Diagnosed) -> Value {
+    let runs = asked.iter().map(|own| {
+        json!({
+            "recording": own.name,
+            "duration_s": own.duration,
+            "expected_probability_of_the_truth": (own.expected * 1e4).round() / 1e4,
+            "instructions": own.instructions,
+        })
+    });
+    json!({
+        "stop": stop.words(),
+        "odds": odds.iter().map(Odds::json).collect::<Vec<_>>(),
+        "asked": runs.collect::<Vec<_>>(),
+        "answer": found.answer,
+        "seconds": seconds,
+    })
+}
+
+/// How each recording cut the explanations.
+fn page(stop: &Stop, odds: &[Odds], asked: &[Asked], case: &str) -> Document<'static> {
+    let last = odds.last();
+    let best = last.and_then(|odds| odds.open.first());
+    let (name, probability) = best.cloned().unwrap_or_default();
+    let verdict = format!(
+        "After {} of its own choice: {name}, at {}; {}.",
+        crate::quantity::counted(asked.len(), "recording"),
+        percent(probability),
+        stop.words()
+    );
+    let mut names: Vec<&str> = Vec::new();
+    for (name, _) in odds.iter().rev().flat_map(|odds| &odds.open) {
+        if !names.contains(&name.as_str()) {
+            names.push(name);
+        }
+    }
+    let mut heads = "explanation | #at first".to_owned();
+    for own in asked {
+        heads += &format!(" | #after {}", own.name);
+    }
+    let row = |name: &str| {
+        let own = odds.iter().map(|odds| {
+            let shown = odds
+                .probability(name)
+                .map_or_else(|| "below 0.1 %".to_owned(), percent);
+            Cell::from(shown)
+        });
+        [Cell::from(name.to_owned())]
+            .into_iter()
+            .chain(own)
+            .collect::<Vec<_>>()
+    };
+    let none = [Cell::from("none of these")].into_iter().chain(
+        odds.iter()
+            .map(|odds| Cell::from(percent(odds.none_of_these))),
+    );
+    let rows = names.iter().map(|name| row(name)).chain([none.collect()]);
+    let table = Table::new("", Column::list(&heads), rows.collect());
+    let mut sections = vec![Section::new(
+        "How each recording cut the explanations",
+        vec![Block::Table(table)],
+    )];
+    for own in asked {
+        let expected = format!(
+            "{:.1} s; expected to bring the right explanation to {}.",
+            own.duration,
+            percent(own.expected)
+        );
+        let steps = own.instructions.iter().cloned();
+        let blocks = [expected].into_iter().chain(steps).map(Block::Paragraph);
+        sections.push(Section::new(
+            &format!("Asked for {}", own.name),
+            blocks.collect(),
+        ));
+    }
+    Document {
+        title: format!("Investigation of {case}"),
+        verdict,
+        tone: match stop {
+            Stop::Settled | Stop::NothingMissing => Tone::Found,
+            Stop::NoExperiment | Stop::Runs => Tone::Open,
+        },
+        sections,
+        footer: "Made by idc investigate. The folder case beside this page holds all recordings with their rig file.".to_owned(),
+        ..Document::default()
+    }
+}

@@ -1,0 +1,147 @@
+//! The page of an experiment: which explanations are open, what each predicts, and the odds that are expected afterwards.
+
+use super::super::error::AppError;
+use super::Proposal;
+use super::files::{BENCH, INPUTS};
+use crate::diagnosis::answer::words::{CHANNEL_UNITS, CHANNEL_WORDS};
+use crate::document::{
+    Block, Cell, Column, Document, Figure, Horizontal, Panel, Role, Section, Series, Stroke, Table,
+    Tone,
+};
+use crate::figure::svg;
+use crate::quantity::percent;
+
+/// Explanations that are drawn.
+const DRAWN: usize = 4;
+/// Their colours.
+const ROLES: [Role; DRAWN] = [Role::Filtered, Role::Force, Role::Stroke, Role::Estimate];
+/// Expected probability from which the experiment settles which explanation is right [1].
+pub(super) const SETTLES: f64 = 0.95;
+
+/// All of it.
+pub(super) fn of_proposal(proposal: &Proposal, case: &str) -> Document<'static> {
+    let expected = proposal.expected_probability();
+    let chosen = &proposal.chosen;
+    let duration = chosen.programme.duration();
+    let is_open = proposal.open.len() > 1;
+    let verdict = match (is_open, expected >= SETTLES) {
+        (false, _) => format!(
+            "One explanation is open; this recording of {duration:.1} s is expected to tell most of its numbers."
+        ),
+        (true, true) => format!(
+            "This recording of {duration:.1} s is expected to settle which explanation is right: its probability comes to {}.",
+            percent(expected)
+        ),
+        (true, false) => format!(
+            "No allowed recording is expected to settle which explanation is right; this one of {duration:.1} s brings its probability to {}.",
+            percent(expected)
+        ),
+    };
+    let then = |place: usize| percent(chosen.expected.odds[place][place]);
+    let rows = proposal.open.iter().enumerate().map(|(place, own)| {
+        vec![
+            Cell::from(own.name.clone()),
+            Cell::from(percent(own.probability)),
+            Cell::from(then(place)),
+        ]
+    });
+    let none = vec![
+        Cell::from("none of these"),
+        Cell::from(percent(proposal.none_of_these)),
+        Cell::from(""),
+    ];
+    let columns =
+        Column::list("explanation | #probability now | #expected afterwards if it is right");
+    let table = Table::new("", columns, rows.chain([none]).collect());
+    let steps = chosen.programme.instructions().into_iter();
+    let panels = panels(proposal).into_iter().map(Block::Panel).collect();
+    Document {
+        title: format!("Next experiment of {case}"),
+        verdict,
+        tone: if expected >= SETTLES || !is_open {
+            Tone::Good
+        } else {
+            Tone::Open
+        },
+        lead: vec![format!(
+            "The largest force on the part, over 20 draws of the numbers of every open explanation, is {:.0} N; {:.0} N are allowed.",
+            chosen.force, proposal.limits.force
+        )],
+        sections: vec![
+            Section::new("Open explanations", vec![Block::Table(table)]),
+            Section::new("What to do", steps.map(Block::Paragraph).collect()),
+            Section::new("What each explanation predicts", panels).appendix(),
+        ],
+        footer: format!(
+            "Made by idc next. {INPUTS} holds the inputs sample by sample, {BENCH} a bench that carries them out."
+        ),
+        ..Document::default()
+    }
+}
+
+/// expected.svg.
+pub(super) fn picture(proposal: &Proposal) -> Result<String, AppError> {
+    Ok(svg(&Figure {
+        title: "What each explanation predicts".to_owned(),
+        panels: panels(proposal),
+    })?)
+}
+
+fn panels(proposal: &Proposal) -> Vec<Panel<'static>> {
+    let inputs = proposal.chosen.programme.inputs(&proposal.limits);
+    let series = |label: &str, values: Vec<f64>, role| {
+        Series::new(label, inputs.time.clone(), values, role, Stroke::Plain)
+    };
+    let panel = |title: &str, label: String, series| Panel {
+        title: title.to_owned(),
+        vertical_label: label,
+        horizontal: Horizontal::Time,
+        series,
+        group: "time".to_owned(),
+        ..Panel::default()
+    };
+    let bar = inputs.set_pressure.iter().map(|p| p * 1e-5).collect();
+    let mut all = vec![panel(
+        "asked for",
+        "set pressure [bar]".to_owned(),
+        vec![series("set pressure", bar, Role::Command)],
+    )];
+    let valve: Vec<f64> = inputs
+        .extends
+        .iter()
+        .map(|e| f64::from(u8::from(*e)))
+        .collect();
+    if valve.contains(&0.0) {
+        all.push(panel(
+            "asked for",
+            "valve extends [1]".to_owned(),
+            vec![series("valve", valve, Role::Command)],
+        ));
+    }
+    let moves = (proposal.chosen.programme.surface.as_ref()).is_some_and(|s| s.peak_to_peak > 0.0);
+    if moves {
+        let surface = inputs.surface.iter().map(|x| x * 1e3).collect();
+        all.push(panel(
+            "asked for",
+            "surface [mm]".to_owned(),
+            vec![series("surface", surface, Role::Command)],
+        ));
+    }
+    for (channel, noise) in proposal.sensors.noise.iter().enumerate() {
+        if !noise.is_finite() {
+            continue;
+        }
+        let (unit, factor) = CHANNEL_UNITS[channel];
+        let drawn = proposal.open.iter().zip(&proposal.chosen.expected.readings);
+        let own = drawn.zip(ROLES).map(|((own, readings), role)| {
+            let values = readings[channel].iter().map(|v| v * factor).collect();
+            series(&own.name, values, role)
+        });
+        all.push(panel(
+            "predicted",
+            format!("{} [{unit}]", CHANNEL_WORDS[channel]),
+            own.collect(),
+        ));
+    }
+    all
+}

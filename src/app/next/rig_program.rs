@@ -1,0 +1,195 @@
+//! A rig as a program: it is called as `PROGRAM IN.csv OUT.csv`, carries the inputs out and writes its recording.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+
+use super::NextError;
+use super::files::COLUMNS;
+use crate::diagnosis::recordings::recorded::{COLUMNS as MEASURED, recorded_of};
+use crate::plant::{DeviceParts, PlantInputs};
+use crate::recording::Recording;
+
+/// Between two looks at whether it is done.
+const LOOK: Duration = Duration::from_millis(20);
+/// By how much its clock may differ: an offset [s], and a share of the time [1].
+const CLOCK: [f64; 2] = [0.05, 0.01];
+/// Share of the samples that may hold other inputs: those about a change [1].
+const STRAY: f64 = 0.02;
+/// Letters of its messages that are repeated.
+const MOST_SAID: usize = 300;
+
+/// What it did.
+pub(super) enum Reply {
+    /// A recording stands in the file.
+    Recorded,
+    /// It refuses these inputs; what it said.
+    Refuses(String),
+    /// The same inputs are to be tried again.
+    Again,
+}
+
+/// A rig's program.
+pub(super) struct RigProgram {
+    pub program: PathBuf,
+    pub patience: Duration,
+}
+
+impl RigProgram {
+    fn name(&self) -> String {
+        self.program.display().to_string()
+    }
+
+    /// Carries inputs out.
+    pub(super) fn call(&self, inputs: &Path, recording: &Path) -> Result<Reply, NextError> {
+        let errors = recording.with_extension("stderr.txt");
+        let cannot = |cause: std::io::Error| NextError::NoProgram {
+            program: self.name(),
+            cause: cause.to_string(),
+        };
+        let to = std::fs::File::create(&errors).map_err(cannot)?;
+        let mut child = Command::new(&self.program)
+            .args([inputs, recording])
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(to)
+            .spawn()
+            .map_err(cannot)?;
+        let start = Instant::now();
+        let status = loop {
+            if let Some(status) = child.try_wait().map_err(cannot)? {
+                break status;
+            }
+            if start.elapsed() > self.patience {
+                // It may be gone by now.
+                let _ = child.kill();
+                let _ = child.wait();
+                return Err(NextError::TooLong {
+                    program: self.name(),
+                    seconds: self.patience.as_secs_f64(),
+                });
+            }
+            std::thread::sleep(LOOK);
+        };
+        self.reply(status, &errors, recording)
+    }
+
+    fn reply(
+        &self,
+        status: ExitStatus,
+        errors: &Path,
+        recording: &Path,
+    ) -> Result<Reply, NextError> {
+        let text = std::fs::read(errors).unwrap_or_default();
+        let text = String::from_utf8_lossy(&text);
+        let line = text.lines().rev().find(|line| !line.trim().is_empty());
+        let said = line.map_or_else(String::new, |line| {
+            let short: String = line.chars().take(MOST_SAID).collect();
+            format!(": {short:?}")
+        });
+        match status.code() {
+            Some(0) if recording.is_file() => Ok(Reply::Recorded),
+            Some(0) => Err(NextError::Nothing {
+                program: self.name(),
+                file: recording.display().to_string(),
+                columns: ["time_s"]
+                    .into_iter()
+                    .chain(COLUMNS)
+                    .chain(MEASURED)
+                    .collect::<Vec<_>>()
+                    .join(", "),
+            }),
+            Some(3) => Ok(Reply::Refuses(said)),
+            Some(4) => Ok(Reply::Again),
+            code => Err(NextError::Failed {
+                program: self.name(),
+                code: code.map_or_else(|| status.to_string(), |code| code.to_string()),
+                said,
+            }),
+        }
+    }
+
+    /// Refuses it after so many experiments.
+    pub(super) fn refused(&self, tries: usize, said: String) -> NextError {
+        NextError::Refused {
+            program: self.name(),
+            tries,
+            said,
+        }
+    }
+}
+
+/// Checks that a recording was made with the inputs that were asked for, as values that are held between samples. Its clock is its own: it may differ by an offset and a
+/// rate, which are for the diagnosis to find.
+pub(super) fn check_inputs(
+    file: &Path,
+    recording: &Recording,
+    asked: &PlantInputs,
+) -> Result<(), super::AppError> {
+    let name = file.display().to_string();
+    let found = recorded_of(DeviceParts::Whole, &name, recording)?.inputs;
+    let begin = found.time.first().copied().unwrap_or_default();
+    let last = asked.time.len() - 1;
+    let index = |time: f64| {
+        asked
+            .time
+            .partition_point(|t| *t <= time)
+            .saturating_sub(1)
+            .min(last)
+    };
+    let range = |values: &[f64]| {
+        let finite = values.iter().copied().filter(|v| v.is_finite());
+        let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| {
+            [l.min(v), h.max(v)]
+        });
+        if high > low { high - low } else { high.abs() }
+    };
+    let flags =
+        |values: &[bool]| -> Vec<f64> { values.iter().map(|v| f64::from(u8::from(*v))).collect() };
+    let [asked_valve, found_valve] = [flags(&asked.extends), flags(&found.extends)];
+    let columns = [
+        (COLUMNS[0], &asked.set_pressure, &found.set_pressure, 100.0),
+        (COLUMNS[1], &asked_valve, &found_valve, 0.01),
+        (COLUMNS[2], &asked.surface, &found.surface, 2e-4),
+    ];
+    for (column, asked_values, values, least) in columns {
+        let slack = (0.01 * range(asked_values)).max(least);
+        let other = |(place, value): &(usize, &f64)| {
+            let time = found.time[*place] - begin;
+            let reach = CLOCK[0] + CLOCK[1] * time;
+            let near = &asked_values[index(time - reach)..=index(time + reach)];
+            let fits = |asked: &f64| match (asked.is_finite(), value.is_finite()) {
+                (true, true) => (asked - **value).abs() <= slack,
+                (asked, found) => asked == found,
+            };
+            // Between two samples of what was asked for a surface stands in between.
+            let [low, high] = near
+                .iter()
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| {
+                    [l.min(*v), h.max(*v)]
+                });
+            !(near.iter().any(fits) || (low - slack..=high + slack).contains(*value))
+        };
+        let strays: Vec<(usize, &f64)> = values.iter().enumerate().filter(other).collect();
+        if strays.len() as f64 > STRAY * values.len() as f64 {
+            let (place, value) = strays[0];
+            let time = found.time[place];
+            return Err(NextError::OtherInputs {
+                file: name,
+                time,
+                column,
+                found: shown(*value),
+                asked: shown(asked_values[index(time - begin)]),
+            }
+            .into());
+        }
+    }
+    Ok(())
+}
+
+fn shown(value: f64) -> String {
+    match value.is_finite() {
+        true => format!("{value:.5}"),
+        false => "empty".to_owned(),
+    }
+}

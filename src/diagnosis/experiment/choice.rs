@@ -1,0 +1,284 @@
+//! The choice of an experiment: programmes drawn within the limits and changed where that gains, by what each is expected to tell per second.
+//!
+//! ```text
+//! value = (I + w L) / (T + c)
+//! ```
+//!
+//! I information on which explanation is right, L on how large its numbers are [nat], T length of the recording, c cost of preparing it, both in seconds; w is
+//! small as long as it is open which, and one once that is settled.
+
+use nalgebra::DVector;
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+use rayon::prelude::*;
+
+use super::information::{Expected, Open, Sensors, entropy, expected, shares_of};
+use super::limits::{LimitError, Limits};
+use super::programme::Programme;
+use crate::diagnosis::fit::covariance::inverse;
+use crate::plant::{PlantParameters, simulate};
+
+/// Weight of a number's information while it is open which explanation is right [1].
+const BESIDE: f64 = 0.02;
+/// Entropy from which it is open [nat]: two explanations of 0.98 and 0.02.
+const OPEN: f64 = 0.1;
+/// Draws of an explanation's numbers with which the force on the part is looked at.
+const DRAWS: usize = 20;
+/// Share of the programmes that are drawn, the others being changed ones [1].
+const DRAWN: f64 = 0.35;
+/// Programmes that are changed further.
+const KEPT: usize = 6;
+
+/// What a choice is made by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ChoiceSettings {
+    /// Programmes that are looked at.
+    pub programmes: usize,
+    /// Seed of what is drawn.
+    pub seed: u64,
+    /// What preparing a recording costs, as seconds of recording [s].
+    pub preparation: f64,
+}
+
+impl Default for ChoiceSettings {
+    fn default() -> Self {
+        Self {
+            programmes: 240,
+            seed: 1,
+            preparation: 5.0,
+        }
+    }
+}
+
+/// An experiment that was chosen.
+#[derive(Debug, Clone)]
+pub struct Chosen {
+    /// What is done.
+    pub programme: Programme,
+    /// What it is expected to tell.
+    pub expected: Expected,
+    /// Its value [nat/s].
+    pub value: f64,
+    /// Largest force on the part over all draws of all explanations [N].
+    pub force: f64,
+}
+
+/// Chooses an experiment; `observer` is given programmes looked at and in all.
+///
+/// # Errors
+/// None that keeps the force on the part.
+pub fn choose(
+    open: &[Open],
+    sensors: &Sensors,
+    limits: &Limits,
+    settings: &ChoiceSettings,
+    observer: &mut dyn FnMut(usize, usize),
+) -> Result<Chosen, LimitError> {
+    let mut random = ChaCha8Rng::seed_from_u64(settings.seed);
+    let plants: Vec<PlantParameters> = open
+        .iter()
+        .flat_map(|own| draws(own, &mut random))
+        .collect();
+    let is_open = entropy(&shares_of(open)) > OPEN;
+    let weight = if is_open { BESIDE } else { 1.0 };
+    let drawn = (DRAWN * settings.programmes as f64).ceil() as usize;
+    let mut kept: Vec<Chosen> = Vec::new();
+    let mut least = f64::INFINITY;
+    for index in 0..settings.programmes {
+        observer(index, settings.programmes);
+        let programme = match kept.is_empty() || index < drawn {
+            true => Programme::drawn(limits, &mut random),
+            false => {
+                let which = index % kept.len();
+                kept[which].programme.changed(limits, &mut random)
+            }
+        };
+        let inputs = programme.inputs(limits);
+        let expected = expected(open, sensors, &inputs);
+        let duration = programme.duration();
+        let gained = expected.which + weight * expected.how_much;
+        let value = gained / (duration + settings.preparation);
+        if kept.len() == KEPT && kept[KEPT - 1].value >= value {
+            continue;
+        }
+        // Of a programme that would be kept, whether it may be done.
+        let force = force_of(&plants, &programme, limits);
+        least = least.min(force);
+        if force > limits.force {
+            continue;
+        }
+        let chosen = Chosen {
+            programme,
+            expected,
+            value,
+            force,
+        };
+        kept.push(chosen);
+        kept.sort_by(|a, b| b.value.total_cmp(&a.value));
+        kept.truncate(KEPT);
+    }
+    observer(settings.programmes, settings.programmes);
+    match kept.into_iter().next() {
+        Some(best) => Ok(best),
+        None => Err(LimitError::Force {
+            most: limits.force,
+            least,
+        }),
+    }
+}
+
+/// Largest force on the part of a programme [N].
+fn force_of(plants: &[PlantParameters], programme: &Programme, limits: &Limits) -> f64 {
+    let inputs = programme.inputs(limits);
+    if programme.surface.is_none() {
+        return 0.0;
+    }
+    let forces = plants.par_iter().map(|plant| {
+        let trajectory = simulate(plant, &inputs);
+        let force = trajectory.truth.contact_force.iter().copied();
+        force.fold(0.0, f64::max)
+    });
+    forces.reduce(|| 0.0, f64::max)
+}
+
+/// An explanation as it was fitted, and draws of its numbers.
+fn draws(open: &Open, random: &mut ChaCha8Rng) -> Vec<PlantParameters> {
+    let count = open.free.len();
+    let mut all = vec![open.plant.clone()];
+    if open.information.nrows() != count {
+        return all;
+    }
+    let covariance = inverse(&open.information);
+    let Some(root) = covariance.cholesky().map(|c| c.l()) else {
+        return all;
+    };
+    for _ in 1..DRAWS {
+        let normal = DVector::from_fn(count, |_, _| StandardNormal.sample(random));
+        let moved = &root * normal;
+        let mut plant = open.plant.clone();
+        for (i, (free, value)) in open.free.iter().zip(&open.values).enumerate() {
+            let [back, on] = free.room(*value);
+            let at = free.coordinate.of(*value) + moved[i].clamp(back, on);
+            free.quantity
+                .set(&mut plant, free.clamp(free.coordinate.value(at)));
+        }
+        all.push(plant);
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::experiment::limits::Movable;
+    use crate::diagnosis::test_evidence::plant;
+    use nalgebra::DMatrix;
+
+    fn limits() -> Limits {
+        Limits {
+            movable: Movable::ALL,
+            step: 0.004,
+            set_pressure: [0.0, 3e5],
+            set_pressure_rate: 1e8,
+            retracts: true,
+            surface: Some([0.012, 0.031]),
+            surface_motion: [0.2, 3.0],
+            without_workpiece: true,
+            force: 1e3,
+            duration: 4.0,
+        }
+    }
+
+    const SENSORS: Sensors = Sensors {
+        noise: [400.0, 2e-5, 0.8, 0.15],
+        variance: [1.0; 4],
+    };
+
+    fn pair(change: impl Fn(&mut PlantParameters)) -> [Open; 2] {
+        let mut other = plant();
+        change(&mut other);
+        [("as it is", plant()), ("changed", other)].map(|(name, plant)| Open {
+            name: name.to_owned(),
+            probability: 0.5,
+            plant,
+            free: Vec::new(),
+            values: Vec::new(),
+            information: DMatrix::zeros(0, 0),
+            of_effects: Vec::new(),
+        })
+    }
+
+    fn settings(programmes: usize) -> ChoiceSettings {
+        ChoiceSettings {
+            programmes,
+            ..ChoiceSettings::default()
+        }
+    }
+
+    fn chosen(open: &[Open], limits: &Limits, programmes: usize) -> Result<Chosen, LimitError> {
+        choose(
+            open,
+            &SENSORS,
+            limits,
+            &settings(programmes),
+            &mut |_, _| (),
+        )
+    }
+
+    /// Only a valve that reverses shows that it does so late.
+    #[test]
+    fn a_late_valve_is_sought_by_reversing_it() {
+        let late = pair(|plant| plant.device.switching_delay = 2e-4);
+        let found = chosen(&late, &limits(), 60).unwrap();
+        let extends: Vec<bool> = found.programme.segments.iter().map(|s| s.extends).collect();
+        assert!(
+            extends.windows(2).any(|two| two[0] != two[1]),
+            "{extends:?}"
+        );
+        assert!(found.expected.which > 0.3, "{}", found.expected.which);
+        let left_alone = Limits {
+            retracts: false,
+            ..limits()
+        };
+        let found = chosen(&late, &left_alone, 20).unwrap();
+        assert!(found.expected.which < 1e-9, "{}", found.expected.which);
+    }
+
+    #[test]
+    fn the_same_seed_chooses_the_same_and_more_programmes_no_worse() {
+        let pair = pair(|plant| plant.device.moving_mass *= 1.002);
+        let [few, again, many] = [20, 20, 80].map(|count| chosen(&pair, &limits(), count).unwrap());
+        assert_eq!(few.programme, again.programme);
+        assert!(
+            many.value >= 0.9 * few.value,
+            "{} {}",
+            many.value,
+            few.value
+        );
+    }
+
+    /// What the part may bear is kept by every draw; where nothing keeps it, that is said with the least force found.
+    #[test]
+    fn the_part_is_spared() {
+        let gained = pair(|plant| plant.sensors.force_gain = 1.05);
+        let gentle = Limits {
+            force: 150.0,
+            ..limits()
+        };
+        let found = chosen(&gained, &gentle, 60).unwrap();
+        assert!(found.force <= 150.0, "{}", found.force);
+        let surface = Limits {
+            force: 1e-3,
+            without_workpiece: false,
+            set_pressure: [2e5, 3e5],
+            retracts: false,
+            ..limits()
+        };
+        let error = chosen(&gained, &surface, 10).unwrap_err().to_string();
+        assert!(
+            error.contains("force_n") && error.contains("[limits]"),
+            "{error}"
+        );
+    }
+}

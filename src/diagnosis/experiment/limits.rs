@@ -1,0 +1,218 @@
+//! How far an experiment may move a rig, and by what.
+
+use crate::diagnosis::recordings::evidence::Evidence;
+use crate::plant::{Channel, OperatingLimits};
+use crate::stats::median_step;
+
+/// What may be moved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Movable {
+    /// The set pressure.
+    pub set_pressure: bool,
+    /// The 5/2 valve.
+    pub solenoid: bool,
+    /// The surface, or whether there is one at all.
+    pub surface: bool,
+}
+
+impl Movable {
+    /// All of it.
+    pub const ALL: Self = Self {
+        set_pressure: true,
+        solenoid: true,
+        surface: true,
+    };
+}
+
+/// Limits of an experiment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limits {
+    /// What may be moved.
+    pub movable: Movable,
+    /// Time between two samples [s].
+    pub step: f64,
+    /// Least and largest set pressure [Pa gauge].
+    pub set_pressure: [f64; 2],
+    /// Largest rate of the set pressure [Pa/s].
+    pub set_pressure_rate: f64,
+    /// Whether the valve may retract.
+    pub retracts: bool,
+    /// Where a surface may stand [m]; none where there was never one.
+    pub surface: Option<[f64; 2]>,
+    /// Largest speed [m/s] and acceleration [m/s2] of the surface.
+    pub surface_motion: [f64; 2],
+    /// Whether the tool may run without a workpiece.
+    pub without_workpiece: bool,
+    /// Largest force on the part [N].
+    pub force: f64,
+    /// Longest recording [s].
+    pub duration: f64,
+}
+
+/// Limits that leave nothing to be done.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum LimitError {
+    /// Nothing may be moved.
+    #[error(
+        "nothing may be moved: {what}; expected a set pressure, a valve or a surface that may take another value"
+    )]
+    NothingMoves {
+        /// Why.
+        what: String,
+    },
+    /// Two that exclude each other.
+    #[error("`{lower}` is {least} and `{upper}` {most}, expected the first below the second")]
+    Contradiction {
+        /// Key of the lower one.
+        lower: &'static str,
+        /// Its value.
+        least: f64,
+        /// Key of the upper one.
+        upper: &'static str,
+        /// Its value.
+        most: f64,
+    },
+    /// The force that the device rests with is more than the part may bear.
+    #[error(
+        "every programme that was tried presses the part with more than `force_n` = {most:.3} N, at least {least:.3} N; expected a larger force or a smaller set pressure in [limits]"
+    )]
+    Force {
+        /// The limit [N].
+        most: f64,
+        /// The least of the largest forces [N].
+        least: f64,
+    },
+}
+
+impl Limits {
+    /// What a file states, and for the rest what the recordings did.
+    ///
+    /// # Errors
+    /// Limits that contradict one another, or leave nothing to be moved.
+    pub fn new(
+        evidence: &Evidence,
+        stated: &OperatingLimits,
+        movable: Movable,
+        duration: f64,
+    ) -> Result<Self, LimitError> {
+        let seen = Seen::of(evidence);
+        let least = stated.surface[0].or(seen.surface.map(|s| s[0]));
+        let most = stated.surface[1].or(seen.surface.map(|s| s[1]));
+        let surface = least.zip(most).map(|(least, most)| [least, most]);
+        if let Some([least, most]) = surface
+            && least > most
+        {
+            return Err(LimitError::Contradiction {
+                lower: "limits.surface_least_m",
+                least,
+                upper: "limits.surface_most_m",
+                most,
+            });
+        }
+        let limits = Self {
+            movable,
+            step: seen.step,
+            set_pressure: match movable.set_pressure {
+                true => [0.0, stated.set_pressure.unwrap_or(seen.set_pressure)],
+                false => [seen.usual_pressure; 2],
+            },
+            set_pressure_rate: stated.set_pressure_rate.unwrap_or(seen.set_pressure_rate),
+            retracts: movable.solenoid && seen.retracts,
+            surface,
+            surface_motion: match movable.surface {
+                true => [
+                    stated.surface_speed.unwrap_or(seen.surface_motion[0]),
+                    seen.surface_motion[1],
+                ],
+                false => [0.0; 2],
+            },
+            without_workpiece: match surface {
+                Some(_) => movable.surface && seen.without_workpiece,
+                None => true,
+            },
+            force: stated.force.unwrap_or(seen.force),
+            duration: stated.duration.map_or(duration, |most| duration.min(most)),
+        };
+        limits.check()?;
+        Ok(limits)
+    }
+
+    fn check(&self) -> Result<(), LimitError> {
+        let [least, most] = self.set_pressure;
+        let pressure_moves = self.movable.set_pressure && most > least;
+        let surface_moves = self.movable.surface && self.surface.is_some_and(|[a, b]| b > a);
+        if pressure_moves || self.retracts || surface_moves {
+            return Ok(());
+        }
+        let mut why = Vec::new();
+        if !pressure_moves {
+            why.push(match self.movable.set_pressure {
+                true => "the set pressure is zero in every recording".to_owned(),
+                false => "the set pressure is to be left alone".to_owned(),
+            });
+        }
+        why.push("the valve never retracts, or is to be left alone".to_owned());
+        why.push("the surface stands still, or is to be left alone".to_owned());
+        Err(LimitError::NothingMoves {
+            what: why.join(", "),
+        })
+    }
+}
+
+/// What the recordings did.
+struct Seen {
+    step: f64,
+    set_pressure: f64,
+    usual_pressure: f64,
+    set_pressure_rate: f64,
+    retracts: bool,
+    surface: Option<[f64; 2]>,
+    surface_motion: [f64; 2],
+    without_workpiece: bool,
+    force: f64,
+}
+
+impl Seen {
+    fn of(evidence: &Evidence) -> Self {
+        let inputs = || evidence.recordings.iter().map(|own| &own.inputs);
+        let pressures: Vec<f64> = inputs()
+            .flat_map(|i| i.set_pressure.iter().copied())
+            .collect();
+        let surfaces = inputs().flat_map(|i| i.surface.iter().copied());
+        let surfaces: Vec<f64> = surfaces.filter(|x| x.is_finite()).collect();
+        let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
+        let rates = |pick: fn(&crate::plant::PlantInputs) -> &Vec<f64>| {
+            most(&mut inputs().flat_map(move |i| {
+                let pairs = pick(i).windows(2).zip(i.time.windows(2));
+                pairs.map(|(v, t)| (v[1] - v[0]).abs() / (t[1] - t[0]))
+            }))
+        };
+        let accelerations = most(&mut inputs().flat_map(|i| {
+            let triples = i.surface.windows(3).zip(i.time.windows(3));
+            triples.filter_map(|(x, t)| {
+                let [before, after] = [1, 2].map(|k: usize| (x[k] - x[k - 1]) / (t[k] - t[k - 1]));
+                let found = (after - before).abs() / (0.5 * (t[2] - t[0]));
+                found.is_finite().then_some(found)
+            })
+        }));
+        let force = Channel::Force as usize;
+        let forces = evidence.recordings.iter().flat_map(|m| &m.readings[force]);
+        let steps = inputs().map(|i| median_step(&i.time));
+        let range = surfaces
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| {
+                [low.min(*x), high.max(*x)]
+            });
+        Self {
+            step: steps.fold(f64::INFINITY, f64::min),
+            set_pressure: most(&mut pressures.iter().copied()),
+            usual_pressure: crate::stats::median(pressures.iter().copied()).unwrap_or(0.0),
+            set_pressure_rate: rates(|i| &i.set_pressure),
+            retracts: inputs().any(|i| i.extends.iter().any(|extends| !extends)),
+            surface: (!surfaces.is_empty()).then_some(range),
+            surface_motion: [rates(|i| &i.surface), accelerations],
+            without_workpiece: evidence.recordings.iter().any(|m| m.free),
+            force: most(&mut forces.copied().filter(|f| f.is_finite())),
+        }
+    }
+}

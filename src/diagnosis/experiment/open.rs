@@ -1,0 +1,82 @@
+//! The explanations of a diagnosis that are open, with their odds, and beside them that it is none of these.
+
+use super::information::{Open, Sensors};
+use crate::diagnosis::answer::finding::Diagnosis;
+use crate::diagnosis::difference::localise::robust_rms;
+use crate::diagnosis::recordings::evidence::by_channel;
+use crate::diagnosis::search::ranking::Ranked;
+use crate::plant::CHANNELS;
+
+/// Probability below which an explanation is settled not to be the one [1].
+const LEAST: f64 = 1e-3;
+/// Explanations at most: others behind them are less likely than all of these.
+const MOST: usize = 6;
+/// Least probability that none of the explanations holds [1]: no list holds all laws.
+const NONE_OF_THESE: f64 = 0.005;
+
+impl Diagnosis {
+    /// Explanations that are open, the likeliest first; their probabilities and that of none of these come to one.
+    #[must_use]
+    pub fn open(&self) -> Vec<Open> {
+        let open = || {
+            self.ranked
+                .iter()
+                .filter(|r| r.probability >= LEAST)
+                .take(MOST)
+        };
+        let sum: f64 = open().map(|r| r.probability).sum();
+        let any = 1.0 - self.none_of_these();
+        open()
+            .map(|ranked| self.open_of(ranked, any * ranked.probability / sum))
+            .collect()
+    }
+
+    /// Probability that none of the explanations holds: what the best leaves beyond noise over that and what it gains over the nominal model [1].
+    #[must_use]
+    pub fn none_of_these(&self) -> f64 {
+        let best = &self.best().fit;
+        let left = self.model_error.left(&self.evidence, best);
+        let gained = (self.baseline.prediction.residuals.iter())
+            .filter(|r| r.is_finite())
+            .map(|r| r * r)
+            .sum::<f64>()
+            - best.misfit;
+        (left / (left + gained.max(0.0) + 1.0)).clamp(NONE_OF_THESE, 1.0 - NONE_OF_THESE)
+    }
+
+    fn open_of(&self, ranked: &Ranked, probability: f64) -> Open {
+        let hypothesis = &ranked.hypothesis;
+        let fit = &hypothesis.fit;
+        let names = hypothesis.effect_display_names();
+        let first = hypothesis.tolerated(&self.nominal);
+        Open {
+            name: match names.is_empty() {
+                true => "nothing is missing".to_owned(),
+                false => names.join(" + "),
+            },
+            probability,
+            plant: fit.prediction.plant.clone(),
+            free: fit.free.clone(),
+            values: fit.values.clone(),
+            information: fit.information.clone(),
+            of_effects: (first..fit.free.len()).collect(),
+        }
+    }
+
+    /// The rig's sensors, and what the best explanation leaves beside their noise.
+    #[must_use]
+    pub fn sensors(&self) -> Sensors {
+        let residuals = &self.best().fit.prediction.residuals;
+        let mut variance = [1.0f64; CHANNELS.len()];
+        for (_, channel, own) in by_channel(&self.evidence, residuals) {
+            if let Some((_, sigmas)) = robust_rms(own) {
+                let place = channel as usize;
+                variance[place] = variance[place].max(sigmas * sigmas);
+            }
+        }
+        Sensors {
+            noise: self.evidence.noise,
+            variance,
+        }
+    }
+}

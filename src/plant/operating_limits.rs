@@ -1,0 +1,18 @@
+//! How far the owner of a rig lets it be moved.
+
+/// Limits as a file states them; none where it states nothing.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct OperatingLimits {
+    /// Largest set pressure [Pa gauge].
+    pub set_pressure: Option<f64>,
+    /// Largest rate of the set pressure [Pa/s].
+    pub set_pressure_rate: Option<f64>,
+    /// Where the surface may stand along the stroke, at least and at most [m].
+    pub surface: [Option<f64>; 2],
+    /// Largest speed of the surface [m/s].
+    pub surface_speed: Option<f64>,
+    /// Largest force on the part [N].
+    pub force: Option<f64>,
+    /// Longest recording [s].
+    pub duration: Option<f64>,
+}

@@ -1,0 +1,186 @@
+"""Investigations of laboratory devices whose first recordings leave it open what is missing: by experiments of the program's own choice, and by the fixed
+programme of stairs, ride and cycle repeated for the same recorded time.
+
+    python tests/studies/investigations.py --idc target/release/idc --work build/investigations [--draw 11] [--wanted 10] [--devices 80] [--duration 2]
+
+Devices are those of `idc laboratory --devices`, or with --laws those of `--laws`; the first that leave two explanations above 10 % are taken, and it is said of how many.
+Printed for each: the truth, the probability on it before and after, what else is above 10 %, seconds recorded. The summary compares both ways.
+"""
+
+import argparse
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+RUNS = 2
+LONGEST_S = 15
+
+
+def arguments():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--idc", type=Path, required=True)
+    parser.add_argument("--work", type=Path, required=True)
+    parser.add_argument("--draw", type=int, default=11)
+    parser.add_argument("--wanted", type=int, default=10)
+    parser.add_argument("--devices", type=int, default=80)
+    parser.add_argument("--laws", action="store_true")
+    parser.add_argument("--conditions", default="laboratory")
+    parser.add_argument("--duration", type=float, default=2.0)
+    parser.add_argument("--healthy", type=int, default=0, help="instead, so many devices that lack nothing, each asked for two runs")
+    return parser.parse_args()
+
+
+class Study:
+    def __init__(self, asked):
+        self.asked = asked
+        self.idc = asked.idc.resolve()
+        self.work = asked.work.resolve()
+        self.work.mkdir(parents=True, exist_ok=True)
+        kind = "--laws" if asked.laws else "--devices"
+        self.draw = [kind, str(asked.devices), "--draw", str(asked.draw), "--duration-s", str(asked.duration)]
+        if not asked.laws:
+            self.draw += ["--conditions", asked.conditions]
+
+    def call(self, *words, codes=(0,)):
+        done = subprocess.run([self.idc, *map(str, words)], capture_output=True, text=True)
+        if done.returncode not in codes:
+            raise SystemExit(f"{' '.join(map(str, words))}: exit code {done.returncode}\n{done.stderr}")
+        return done
+
+    def cases(self):
+        folder = self.work / "laboratory"
+        if not folder.exists():
+            self.call("laboratory", *self.draw, "--out", folder, "--quiet")
+        cases = sorted((folder / "cases").iterdir(), key=lambda path: int(path.name.rsplit("-", 1)[1]))
+        return [(case, json.loads((folder / "sealed" / f"{case.name}.json").read_text())) for case in cases]
+
+    def rig(self, case):
+        """A program that is the device of a case."""
+        script = self.work / f"rig-{case.name}"
+        words = " ".join(self.draw)
+        script.write_text(f'#!/bin/sh\nexec {self.idc} laboratory {words} --rig {case.name} "$1" "$2"\n')
+        script.chmod(0o755)
+        return script
+
+    def investigated(self, case, runs):
+        """Odds before and after, and seconds recorded, by experiments of its own choice."""
+        out = self.work / "asked" / case.name
+        self.call(
+            "investigate", case, "--rig", self.rig(case), "--runs", runs, "--time", f"{LONGEST_S}s", "--out", out, "--force", "--quiet", codes=(0, 1)
+        )
+        record = json.loads((out / "investigation.json").read_text())
+        return record["odds"], sum(run["duration_s"] for run in record["asked"]), record
+
+    def repeated(self, case, seconds):
+        """The same recorded time of the programmes that the case has."""
+        folder = self.work / "repeated" / case.name
+        shutil.rmtree(folder, ignore_errors=True)
+        shutil.copytree(case, folder)
+        rig = (folder / "rig.toml").read_text()
+        names = [path for path in sorted(folder.glob("*.csv")) if f'predict = "{path.name}"' not in rig]
+        recorded, turn = 0.0, 0
+        new = []
+        while recorded < seconds:
+            own = names[turn % len(names)]
+            rows = own.read_text().splitlines()
+            # The same inputs give the same noise: a row less each time makes them others.
+            rows = rows[: len(rows) - 1 - turn // len(names)]
+            rows = rows[: max(60, int((seconds - recorded) * 250) + 1)]
+            columns = rows[0].split(",")
+            wanted = [columns.index(name) for name in ("time_s", "set_pressure_pa", "solenoid", "surface_m")]
+            inputs = folder / "inputs.tmp"
+            inputs.write_text("\n".join(",".join(row.split(",")[i] for i in wanted) for row in rows) + "\n")
+            name = f"again-{turn + 1}.csv"
+            subprocess.run([self.rig(case), inputs, folder / name], check=True)
+            inputs.unlink()
+            new.append(name)
+            times = [float(row.split(",")[0]) for row in (rows[1], rows[-1])]
+            recorded += times[1] - times[0]
+            turn += 1
+        listed = ", ".join(f'"{name}"' for name in [path.name for path in names] + new)
+        lines = ["fit = [" + listed + "]" if line.startswith("fit") else line for line in rig.splitlines()]
+        (folder / "rig.toml").write_text("\n".join(line for line in lines if not line.startswith("predict")) + "\n")
+        odds, _, _ = self.odds_of(folder)
+        return odds
+
+    def odds_of(self, case):
+        """Odds of a case as it stands: a proposal that looks at one programme, which says them."""
+        out = self.work / "odds" / case.name
+        done = self.call("next", case, "--out", out, "--force", "--json", "--programmes", 1, codes=(0, 2))
+        if done.returncode:
+            return None, None, done.stderr
+        document = json.loads(done.stdout)
+        return document, None, None
+
+
+def truth_of(sealed):
+    names = [effect["name"] for effect in sealed["effects"]]
+    return sorted(names)
+
+
+def probability(odds, truth):
+    """Probability of the explanations that are the truth: its effects and no other."""
+    wanted = " + ".join(truth) if truth else "nothing is missing"
+    return sum(own["probability"] for own in odds["explanations"] if " + ".join(sorted(own["effects"].split(" + "))) == wanted)
+
+
+def others(odds, truth):
+    wanted = " + ".join(truth) if truth else "nothing is missing"
+    rest = [own for own in odds["explanations"] if " + ".join(sorted(own["effects"].split(" + "))) != wanted]
+    return [f"{own['effects']} {own['probability']:.2f}" for own in rest if own["probability"] > 0.1]
+
+
+def main():
+    asked = arguments()
+    study = Study(asked)
+    rows, drawn = [], 0
+    for case, sealed in study.cases():
+        truth = truth_of(sealed)
+        if bool(asked.healthy) != (not truth):
+            continue
+        drawn += 1
+        first, _, refused = study.odds_of(case)
+        if first is None:
+            print(f"{case.name}: {refused.strip()}", file=sys.stderr)
+            continue
+        above = [own for own in first["explanations"] if own["probability"] > 0.1]
+        if not asked.healthy and len(above) < 2:
+            print(f"{case.name}: settled at once: {above[0]['effects'] if above else 'nothing above 10 %'}", flush=True)
+            continue
+        odds, seconds, record = study.investigated(case, RUNS)
+        row = {
+            "case": case.name,
+            "truth": truth,
+            "before": probability(first, truth),
+            "after": probability(odds[-1], truth),
+            "others": others(odds[-1], truth),
+            "seconds": seconds,
+            "stop": record["stop"],
+        }
+        if seconds > 0 and not asked.healthy:
+            row["repeated"] = probability(study.repeated(case, seconds), truth)
+        rows.append(row)
+        print(json.dumps(row), flush=True)
+        if len(rows) >= (asked.healthy or asked.wanted):
+            break
+    count = len(rows)
+    if not count:
+        raise SystemExit("no case was taken")
+    mean = lambda key: sum(row.get(key, row["before"]) for row in rows) / count  # noqa: E731
+    summary = {
+        "drawn": drawn,
+        "taken": count,
+        "probability_on_the_truth_before": round(mean("before"), 3),
+        "after": round(mean("after"), 3),
+        "repeated": round(mean("repeated"), 3),
+        "without_others_above_10_percent": sum(not row["others"] for row in rows),
+        "mean_seconds": round(sum(row["seconds"] for row in rows) / count, 1),
+    }
+    print(json.dumps(summary))
+    (study.work / "summary.json").write_text(json.dumps({"rows": rows, "summary": summary}, indent=1))
+
+
+if __name__ == "__main__":
+    main()
