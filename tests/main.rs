@@ -43,6 +43,7 @@ mod inert;
 mod laboratory;
 mod layers;
 mod manual;
+mod next_experiment;
 mod old_results;
 mod overwrite;
 mod own_arm;

@@ -15,8 +15,8 @@ use super::terminal::{say_aside, shown_path};
 use crate::document::{Style, text};
 use crate::laboratory::{Recipe, shipped};
 use crate::proof::{
-    CaseConditions, Claims, Course, Diagnose, DrawPlan, ProofError, SweepPlan, folders, laws,
-    laws_page, page, prove, sweep, write_recipes,
+    CaseConditions, Claims, Course, Diagnose, DrawPlan, LEAST_SHARE, ProofError, SweepPlan,
+    folders, laws, laws_page, page, prove, sweep, write_recipes,
 };
 use crate::quantity::counted;
 use crate::recording::RecordingError;
@@ -138,6 +138,12 @@ pub(super) struct LaboratoryArguments {
     /// With --laws or --devices, length of each recording [s].
     #[arg(long, default_value_t = 4.0, value_parser = duration)]
     duration_s: f64,
+    /// With --devices, the smallest effect, as a share of the largest that is plausible.
+    #[arg(long, default_value_t = LEAST_SHARE, value_parser = share)]
+    smallest: f64,
+    /// The largest.
+    #[arg(long, default_value_t = 1.0, value_parser = share)]
+    largest: f64,
     /// With --devices, conditions under which they are recorded.
     #[arg(long, value_enum, default_value_t)]
     conditions: CaseConditions,
@@ -152,6 +158,15 @@ pub(super) struct LaboratoryArguments {
     json: bool,
 }
 
+/// A share of an effect.
+fn share(text: &str) -> Result<f64, String> {
+    let value = text
+        .parse()
+        .ok()
+        .filter(|share| (1e-3..=1.0).contains(share));
+    value.ok_or_else(|| "expected a share from 0.001 to 1".to_owned())
+}
+
 impl LaboratoryArguments {
     fn plan(&self, count: u64, conditions: CaseConditions) -> DrawPlan {
         DrawPlan {
@@ -159,6 +174,7 @@ impl LaboratoryArguments {
             draw: self.draw,
             duration: self.duration_s,
             conditions,
+            shares: [self.smallest.min(self.largest), self.largest],
         }
     }
 }
@@ -327,6 +343,7 @@ fn law_plan(count: u64, arguments: &SweepArguments) -> DrawPlan {
         draw: arguments.draw,
         duration: arguments.duration_s,
         conditions: arguments.conditions,
+        shares: [LEAST_SHARE, 1.0],
     }
 }
 

@@ -11,6 +11,12 @@ pub struct OperatingLimits {
     pub surface: [Option<f64>; 2],
     /// Largest speed of the surface [m/s].
     pub surface_speed: Option<f64>,
+    /// Largest acceleration of the surface [m/s2].
+    pub surface_acceleration: Option<f64>,
+    /// Whether the 5/2 valve may retract.
+    pub solenoid: Option<bool>,
+    /// Whether the tool may run without a workpiece.
+    pub without_workpiece: Option<bool>,
     /// Largest force on the part [N].
     pub force: Option<f64>,
     /// Longest recording [s].

@@ -9,8 +9,8 @@ use crate::laboratory::{EFFECTS, Recipe, write_case};
 
 /// Seed of the first device.
 const FIRST_SEED: u64 = 3_000_000;
-/// Least share of the largest plausible effect; the shares of a draw are spread evenly from here to 1 [1].
-const LEAST_SHARE: f64 = 0.35;
+/// Usual least share of the largest plausible effect [1].
+pub const LEAST_SHARE: f64 = 0.35;
 /// Golden ratio less one: its multiples, less their whole parts, are spread evenly [1].
 const GOLDEN: f64 = 0.618_033_988_749_895;
 
@@ -25,6 +25,8 @@ pub struct DrawPlan {
     pub duration: f64,
     /// Conditions under which they are recorded.
     pub conditions: CaseConditions,
+    /// Least and largest share of the largest plausible effect; those of a draw are spread evenly between [1].
+    pub shares: [f64; 2],
 }
 
 impl DrawPlan {
@@ -38,7 +40,8 @@ impl DrawPlan {
         // A draw begins at an effect of its own.
         let number = index / 2 + 7 * self.draw;
         let effect = &EFFECTS[number as usize % EFFECTS.len()];
-        let share = LEAST_SHARE + (1.0 - LEAST_SHARE) * (GOLDEN * number as f64).fract();
+        let [least, most] = self.shares;
+        let share = least + (most - least) * (GOLDEN * number as f64).fract();
         let (name, effects) = match index % 2 {
             0 => (format!("nothing-{seed}"), Vec::new()),
             _ => (
@@ -109,6 +112,7 @@ mod tests {
             draw: 1,
             duration: 2.0,
             conditions: CaseConditions::Laboratory,
+            shares: [LEAST_SHARE, 1.0],
         };
         let seeds = (0..).zip(plan.seeds(FIRST_SEED));
         let recipes: Vec<Recipe> = seeds.map(|(i, seed)| plan.device(i, seed)).collect();

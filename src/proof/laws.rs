@@ -329,6 +329,7 @@ mod tests {
             draw: 0,
             duration: 4.0,
             conditions: CaseConditions::Laboratory,
+            shares: [super::super::LEAST_SHARE, 1.0],
         };
         let outcome = |subsystem: &str, variables: &[&str], error: f64| LawOutcome {
             made: plan.made(7),

@@ -17,7 +17,7 @@ mod sweep;
 
 pub use case_conditions::CaseConditions;
 pub use confusion::page;
-pub use devices::{DrawPlan, write_recipes};
+pub use devices::{DrawPlan, LEAST_SHARE, write_recipes};
 pub use error::ProofError;
 pub use laws::{LawAnswer, LawOutcome, laws, laws_page};
 pub use outcome::{Made, Outcome};

@@ -36,7 +36,7 @@ mod quantities;
 pub(super) mod tests;
 mod values;
 
-pub use improved::{Improved, improved_text};
+pub use improved::{Improved, improved_text, text_with_recordings};
 pub(super) use keys::{LimitsKeys, PartKeys, RecordingsKeys, SharesKeys};
 pub use known::{FREQUENCY_NAME, Known, coefficient_name, of_term};
 pub(super) use quantities::described_numbers;

@@ -9,6 +9,7 @@ Printed for each: the truth, the probability on it before and after, what else i
 
 import argparse
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -28,6 +29,8 @@ def arguments():
     parser.add_argument("--laws", action="store_true")
     parser.add_argument("--conditions", default="laboratory")
     parser.add_argument("--duration", type=float, default=2.0)
+    parser.add_argument("--smallest", type=float, default=0.02, help="smallest effect, as a share of the largest that is plausible")
+    parser.add_argument("--largest", type=float, default=0.3)
     parser.add_argument("--healthy", type=int, default=0, help="instead, so many devices that lack nothing, each asked for two runs")
     return parser.parse_args()
 
@@ -41,7 +44,7 @@ class Study:
         kind = "--laws" if asked.laws else "--devices"
         self.draw = [kind, str(asked.devices), "--draw", str(asked.draw), "--duration-s", str(asked.duration)]
         if not asked.laws:
-            self.draw += ["--conditions", asked.conditions]
+            self.draw += ["--conditions", asked.conditions, "--smallest", str(asked.smallest), "--largest", str(asked.largest)]
 
     def call(self, *words, codes=(0,)):
         done = subprocess.run([self.idc, *map(str, words)], capture_output=True, text=True)
@@ -53,8 +56,37 @@ class Study:
         folder = self.work / "laboratory"
         if not folder.exists():
             self.call("laboratory", *self.draw, "--out", folder, "--quiet")
+        for case in (folder / "cases").iterdir():
+            self.first_recording_alone(case)
         cases = sorted((folder / "cases").iterdir(), key=lambda path: int(path.name.rsplit("-", 1)[1]))
         return [(case, json.loads((folder / "sealed" / f"{case.name}.json").read_text())) for case in cases]
+
+    def first_recording_alone(self, case):
+        """Of three recordings the first, stairs on a fixed surface, and the limits that all three went to."""
+        rig = case / "rig.toml"
+        text = rig.read_text()
+        if "[limits]" in text:
+            return
+        stroke = float(re.search(r"^stroke_m = (?:\{ value = )?([0-9.e-]+)", text, re.M).group(1))
+        pressures, forces = [], []
+        for path in case.glob("*.csv"):
+            rows = [row.split(",") for row in path.read_text().splitlines()]
+            pressures += [float(row[rows[0].index("set_pressure_pa")]) for row in rows[1:]]
+            if "force_n" in rows[0]:
+                forces += [float(row[rows[0].index("force_n")] or 0) for row in rows[1:]]
+        lines = ['fit = ["stairs.csv"]' if line.startswith("fit") else line for line in text.splitlines() if not line.startswith("predict")]
+        limits = {
+            "set_pressure_pa": max(pressures),
+            "set_pressure_rate_pa_per_s": 1e9,
+            "surface_least_m": round(0.2 * stroke, 4),
+            "surface_most_m": round(0.8 * stroke, 4),
+            "surface_speed_m_per_s": 0.2,
+            "surface_acceleration_m_per_s2": 5,
+            "solenoid": "true",
+            "without_workpiece": "true",
+            "force_n": round(1.1 * max(forces), 1),
+        }
+        rig.write_text("\n".join([*lines, "", "[limits]", *(f"{key} = {value}" for key, value in limits.items())]) + "\n")
 
     def rig(self, case):
         """A program that is the device of a case."""

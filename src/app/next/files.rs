@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::super::error::AppError;
 use super::super::files::REPORT;
-use super::Proposal;
+use super::proposal::Proposal;
 use crate::diagnosis::experiment::programme::HOLD;
 use crate::recording::csv::columns_text;
 

@@ -5,22 +5,26 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 use serde_json::{Value, json};
-use toml_edit::{Array, DocumentMut, value};
 
 use super::super::error::{AppError, ExitCode};
 use super::super::files::{OutputFolder, OverwritePolicy, REPORT, output_folder};
 use super::super::interrupt::Interruptible;
 use super::super::output::say;
 use super::super::progress;
+use super::error::NextError;
+use super::files;
+use super::outputs::write;
+use super::proposal::{Allowed, Proposal, bench_rig, diagnosed};
 use super::rig_program::{Reply, RigProgram, check_inputs};
-use super::{Allowed, NextError, Proposal, bench_rig, diagnosed, files, within};
 use crate::case::{Case, Diagnosed, IMPROVED, RIG, read_rig, rig_of, to_fit};
 use crate::diagnosis::experiment::information::Open;
+use crate::diagnosis::experiment::limits::LimitError;
 use crate::document::{Block, Cell, Column, Document, Section, Style, Table, Tone, html, text};
 use crate::plant::DeviceParts;
 use crate::quantity::percent;
 use crate::recording::RecordingError;
-use crate::recording::atomic::{make_folder, write_text};
+use crate::recording::atomic::{make_folder, write_all, write_text};
+use crate::scenario::rig_file::{RigFile, text_with_recordings};
 
 /// For the help.
 pub(in super::super) const EXAMPLES: &str = "\
@@ -28,10 +32,10 @@ The recordings of a rig are diagnosed, the experiment is chosen that is expected
 to tell most of what they leave open, and the rig's program is called with its
 inputs: PROGRAM IN.csv OUT.csv. Its recording joins the others, and so on until
 one explanation is as probable as --until asks, or nothing that is allowed would
-settle it. IN.csv has columns time_s, set_pressure_pa, solenoid, surface_m; OUT.csv
-those and what was measured. Exit codes of the program: 0 recorded, 3 these inputs
-are refused, 4 try again. Exit codes here: 0 settled, or nothing is missing; 1 it
-stays open; 2 bad input.
+settle it. IN.csv has columns time_s, set_pressure_pa, solenoid, surface_m;
+OUT.csv those and what was measured. Exit codes of the program: 0 recorded, 3
+these inputs are refused, 4 try again. Exit codes here: 0 settled, or nothing is
+missing; 1 it stays open; 2 bad input.
 
 The folder case/ of the results holds all recordings with their rig.toml: `idc
 diagnose` of it comes to the same from the beginning.
@@ -149,7 +153,7 @@ impl Odds {
 /// The case that grows: rig file and recordings in a folder of their own.
 struct Growth {
     folder: PathBuf,
-    text: String,
+    rig: RigFile,
     names: Vec<String>,
 }
 
@@ -159,37 +163,30 @@ impl Growth {
         let names = to_fit(&rig, case)?;
         make_folder(&folder).map_err(|error| RecordingError::write(&folder, error))?;
         for name in &names {
-            let cause = |error: std::io::Error| RecordingError::write(&folder.join(name), error);
-            std::fs::copy(case.join(name), folder.join(name)).map_err(cause)?;
+            copy(&case.join(name), &folder.join(name))?;
         }
-        let text = crate::file::read_text(&case.join(RIG))
-            .map_err(|error| RecordingError::read(&case.join(RIG), error))?;
-        let growth = Self {
-            folder,
-            text,
-            names,
-        };
+        let growth = Self { folder, rig, names };
         growth.write()?;
         Ok(growth)
     }
 
     /// Its rig file, with all recordings.
     fn write(&self) -> Result<(), AppError> {
-        let mut document: DocumentMut = self.text.parse().unwrap_or_default();
-        let names: Array = self.names.iter().map(String::as_str).collect();
-        document["recordings"]["fit"] = value(names);
-        if let Some(table) = document["recordings"].as_table_like_mut() {
-            table.remove("predict");
-        }
-        Ok(write_text(&self.folder.join(RIG), &document.to_string())?)
+        let text = text_with_recordings(&self.rig, &self.names);
+        Ok(write_text(&self.folder.join(RIG), &text)?)
     }
 
     fn add(&mut self, name: String, recording: &Path) -> Result<(), AppError> {
-        let to = self.folder.join(&name);
-        std::fs::copy(recording, &to).map_err(|error| RecordingError::write(&to, error))?;
+        copy(recording, &self.folder.join(&name))?;
         self.names.push(name);
         self.write()
     }
+}
+
+/// A recording in another folder.
+fn copy(from: &Path, to: &Path) -> Result<(), AppError> {
+    let bytes = crate::file::read(from).map_err(|error| RecordingError::read(from, error))?;
+    Ok(write_all(&[(to, bytes)])?)
 }
 
 /// Asks until it is settled.
@@ -282,19 +279,30 @@ fn ask(
             progress::tell(&bar, done, all);
         });
         bar.finish_and_clear();
-        let proposal = proposal?;
-        let gained = proposal.chosen.expected.which;
-        if proposal.open.len() < 2 || gained < WORTH {
+        let proposal = match proposal {
+            // Nothing is gentler than what it has refused.
+            Err(AppError::Next(NextError::Limits(LimitError::Force { .. }))) if refusals > 0 => {
+                break;
+            }
+            proposal => proposal?,
+        };
+        let expected = &proposal.chosen.expected;
+        // Of one explanation that is not certain the recording that tells most of its numbers says most as well of whether it holds.
+        let gained = match proposal.open.len() {
+            1 => expected.how_much,
+            _ => expected.which,
+        };
+        if gained < WORTH {
             return Ok(None);
         }
         let policy = OverwritePolicy::of(arguments.force || refusals > 0);
         let folder = OutputFolder::prepare_within(&run, &files::NAMES, policy)?;
-        super::write(&folder, &proposal, &found.improved, &case.name)?;
-        let recording = within(&run, RECORDING);
+        write(&folder, &proposal, &found.improved, &case.name)?;
+        let recording = run.join(RECORDING);
         // What an earlier investigation left there is no answer.
         let _ = std::fs::remove_file(&recording);
         loop {
-            match program.call(&within(&run, files::INPUTS), &recording)? {
+            match program.call(&run.join(files::INPUTS), &recording)? {
                 Reply::Recorded => {
                     let read = read_rig(DeviceParts::Whole, &recording)?;
                     let inputs = proposal.chosen.programme.inputs(&proposal.limits);

@@ -1,8 +1,8 @@
 //! The page of an experiment: which explanations are open, what each predicts, and the odds that are expected afterwards.
 
 use super::super::error::AppError;
-use super::Proposal;
 use super::files::{BENCH, INPUTS};
+use super::proposal::Proposal;
 use crate::diagnosis::answer::words::{CHANNEL_UNITS, CHANNEL_WORDS};
 use crate::document::{
     Block, Cell, Column, Document, Figure, Horizontal, Panel, Role, Section, Series, Stroke, Table,
@@ -24,9 +24,21 @@ pub(super) fn of_proposal(proposal: &Proposal, case: &str) -> Document<'static> 
     let chosen = &proposal.chosen;
     let duration = chosen.programme.duration();
     let is_open = proposal.open.len() > 1;
+    let is_sure = proposal.open[0].probability >= SETTLES;
+    let is_settled = if is_open {
+        expected >= SETTLES
+    } else {
+        is_sure
+    };
     let verdict = match (is_open, expected >= SETTLES) {
+        (false, _) if is_sure => format!(
+            "One explanation is open, at {}; this recording of {duration:.1} s is expected to tell most of its numbers.",
+            percent(proposal.open[0].probability)
+        ),
         (false, _) => format!(
-            "One explanation is open; this recording of {duration:.1} s is expected to tell most of its numbers."
+            "One explanation is open, at {}, and none of these at {}: this recording of {duration:.1} s holds it to most of its numbers.",
+            percent(proposal.open[0].probability),
+            percent(proposal.none_of_these)
         ),
         (true, true) => format!(
             "This recording of {duration:.1} s is expected to settle which explanation is right: its probability comes to {}.",
@@ -37,7 +49,10 @@ pub(super) fn of_proposal(proposal: &Proposal, case: &str) -> Document<'static> 
             percent(expected)
         ),
     };
-    let then = |place: usize| percent(chosen.expected.odds[place][place]);
+    let then = |place: usize| match is_open {
+        true => percent(chosen.expected.odds[place][place]),
+        false => String::new(),
+    };
     let rows = proposal.open.iter().enumerate().map(|(place, own)| {
         vec![
             Cell::from(own.name.clone()),
@@ -58,11 +73,7 @@ pub(super) fn of_proposal(proposal: &Proposal, case: &str) -> Document<'static> 
     Document {
         title: format!("Next experiment of {case}"),
         verdict,
-        tone: if expected >= SETTLES || !is_open {
-            Tone::Good
-        } else {
-            Tone::Open
-        },
+        tone: if is_settled { Tone::Good } else { Tone::Open },
         lead: vec![format!(
             "The largest force on the part, over 20 draws of the numbers of every open explanation, is {:.0} N; {:.0} N are allowed.",
             chosen.force, proposal.limits.force

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-use super::NextError;
+use super::super::error::AppError;
+use super::error::NextError;
 use super::files::COLUMNS;
 use crate::diagnosis::recordings::recorded::{COLUMNS as MEASURED, recorded_of};
 use crate::plant::{DeviceParts, PlantInputs};
@@ -80,7 +81,7 @@ impl RigProgram {
         errors: &Path,
         recording: &Path,
     ) -> Result<Reply, NextError> {
-        let text = std::fs::read(errors).unwrap_or_default();
+        let text = crate::file::read(errors).unwrap_or_default();
         let text = String::from_utf8_lossy(&text);
         let line = text.lines().rev().find(|line| !line.trim().is_empty());
         let said = line.map_or_else(String::new, |line| {
@@ -125,7 +126,7 @@ pub(super) fn check_inputs(
     file: &Path,
     recording: &Recording,
     asked: &PlantInputs,
-) -> Result<(), super::AppError> {
+) -> Result<(), AppError> {
     let name = file.display().to_string();
     let found = recorded_of(DeviceParts::Whole, &name, recording)?.inputs;
     let begin = found.time.first().copied().unwrap_or_default();

@@ -9,7 +9,7 @@
 //!
 //! y predicted readings in standard deviations of the sensors' noise, J their derivatives by what an explanation leaves free, N what the recordings at hand know
 //! of that, v what explanations leave beyond noise, p odds now, H entropy. Box and Hill's criterion (Technometrics 9, 1967) is the sum over pairs of p_i p_j D2,
-//! which grows without end where one pair is told apart; I is bounded by what is open, so an experiment gains by what it settles. With two explanations that
+//! which grows without end where one pair is distinguished; I is bounded by what is open, so an experiment gains by what it settles. With two explanations that
 //! are even, both choose by D2 (T-optimality: Atkinson and Fedorov, Biometrika 62, 1975).
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_alike_is_not_told_apart_and_what_is_not_is_settled() {
+    fn what_is_alike_stays_open_and_what_is_not_is_settled() {
         let mut other = plant();
         other.sensors.force_gain = 1.2;
         let pair = |second: &PlantParameters| {

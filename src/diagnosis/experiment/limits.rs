@@ -117,17 +117,19 @@ impl Limits {
                 false => [seen.usual_pressure; 2],
             },
             set_pressure_rate: stated.set_pressure_rate.unwrap_or(seen.set_pressure_rate),
-            retracts: movable.solenoid && seen.retracts,
+            retracts: movable.solenoid && stated.solenoid.unwrap_or(seen.retracts),
             surface,
             surface_motion: match movable.surface {
                 true => [
                     stated.surface_speed.unwrap_or(seen.surface_motion[0]),
-                    seen.surface_motion[1],
+                    (stated.surface_acceleration).unwrap_or(seen.surface_motion[1]),
                 ],
                 false => [0.0; 2],
             },
             without_workpiece: match surface {
-                Some(_) => movable.surface && seen.without_workpiece,
+                Some(_) => {
+                    movable.surface && stated.without_workpiece.unwrap_or(seen.without_workpiece)
+                }
                 None => true,
             },
             force: stated.force.unwrap_or(seen.force),

@@ -5,6 +5,7 @@ use crate::diagnosis::answer::finding::Diagnosis;
 use crate::diagnosis::difference::localise::robust_rms;
 use crate::diagnosis::recordings::evidence::by_channel;
 use crate::diagnosis::search::ranking::Ranked;
+use crate::effects::UNLISTED;
 use crate::plant::CHANNELS;
 
 /// Probability below which an explanation is settled not to be the one [1].
@@ -31,7 +32,8 @@ impl Diagnosis {
             .collect()
     }
 
-    /// Probability that none of the explanations holds: what the best leaves beyond noise over that and what it gains over the nominal model [1].
+    /// Probability that none of the explanations holds [1]: what the best leaves beyond noise over that and what it gains over the nominal model, and no less than
+    /// what is stated against the least certain of its effects.
     #[must_use]
     pub fn none_of_these(&self) -> f64 {
         let best = &self.best().fit;
@@ -41,7 +43,25 @@ impl Diagnosis {
             .map(|r| r * r)
             .sum::<f64>()
             - best.misfit;
-        (left / (left + gained.max(0.0) + 1.0)).clamp(NONE_OF_THESE, 1.0 - NONE_OF_THESE)
+        let left = left / (left + gained.max(0.0) + 1.0);
+        let unlisted = self.best().unlisted().map(|_| UNLISTED);
+        let names = self.best().effects.iter().map(|effect| effect.name);
+        let certain = names.chain(unlisted).map(|name| self.certain(name));
+        let doubted = 1.0 - certain.fold(1.0, f64::min);
+        left.max(doubted).clamp(NONE_OF_THESE, 1.0 - NONE_OF_THESE)
+    }
+
+    /// What is stated of an effect of the best explanation, given that one with it is right [1].
+    fn certain(&self, name: &str) -> f64 {
+        let has = |r: &&Ranked| match name {
+            UNLISTED => r.hypothesis.unlisted().is_some(),
+            _ => r.hypothesis.effects.iter().any(|e| e.name == name),
+        };
+        let with: f64 = self.ranked.iter().filter(has).map(|r| r.probability).sum();
+        match with > 0.0 {
+            true => (self.confidence(name) / with.min(1.0)).min(1.0),
+            false => 0.0,
+        }
     }
 
     fn open_of(&self, ranked: &Ranked, probability: f64) -> Open {

@@ -1,6 +1,6 @@
 //! An improved rig file: the nominal one with the values that a diagnosis found, in its own order and with its own comments, and the physics found below them.
 
-use toml_edit::{DocumentMut, InlineTable, Item, Value};
+use toml_edit::{Array, DocumentMut, InlineTable, Item, Value};
 
 use super::super::effects::{WrittenEffect, append, as_written, remove_effects};
 use super::{Known, RigFile, flange, known, latent};
@@ -21,6 +21,21 @@ pub struct Improved<'a> {
     pub known: Option<&'a Known>,
     /// A contact flange as it was fitted.
     pub flange: Option<&'a FittedFlange>,
+}
+
+/// Text of a rig file with other recordings to diagnose from, and none to predict.
+#[must_use]
+pub fn text_with_recordings(rig: &RigFile, names: &[String]) -> String {
+    let mut document: DocumentMut = rig
+        .text
+        .parse()
+        .expect("the text was read as TOML when the rig was loaded");
+    let names: Array = names.iter().map(String::as_str).collect();
+    document["recordings"]["fit"] = Item::Value(Value::Array(names));
+    if let Some(table) = document["recordings"].as_table_like_mut() {
+        table.remove("predict");
+    }
+    document.to_string()
 }
 
 /// Text of the improved file.

@@ -81,6 +81,12 @@ keys! {
         surface_most: Option<f64> = "surface_most_m" in 0.0..=2.0;
         /// largest speed of the surface
         surface_speed: Option<f64> = "surface_speed_m_per_s" in 0.0..=10.0;
+        /// largest acceleration of the surface
+        surface_acceleration: Option<f64> = "surface_acceleration_m_per_s2" in 0.0..=1000.0;
+        /// whether the valve may retract
+        solenoid: Option<bool> = "solenoid";
+        /// whether the tool may run without a workpiece
+        without_workpiece: Option<bool> = "without_workpiece";
         /// largest force on the part
         force: Option<f64> = "force_n" in 0.0..=1e5;
         /// longest recording

@@ -317,6 +317,9 @@ pub(super) fn limits(
         set_pressure_rate: keys.set_pressure_rate,
         surface: [keys.surface_least, keys.surface_most],
         surface_speed: keys.surface_speed,
+        surface_acceleration: keys.surface_acceleration,
+        solenoid: keys.solenoid,
+        without_workpiece: keys.without_workpiece,
         force: keys.force,
         duration: keys.duration,
     })
