@@ -194,3 +194,86 @@ fn shown(value: f64) -> String {
         false => "empty".to_owned(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plant::InitialState;
+    use crate::recording::{RecordedChannel, Unit, schema};
+
+    /// Stairs, a reversal and a surface that moves, as they were asked for.
+    fn asked() -> PlantInputs {
+        let time: Vec<f64> = (0..1000).map(|i| 0.004 * f64::from(i)).collect();
+        PlantInputs {
+            set_pressure: time
+                .iter()
+                .map(|t| 1e5 * (1.0 + (2.0 * t).floor() % 3.0))
+                .collect(),
+            extends: time.iter().map(|t| !(1.5..2.0).contains(t)).collect(),
+            surface: time
+                .iter()
+                .map(|t| 0.02 + 0.005 * (6.0 * t).sin())
+                .collect(),
+            cell: None,
+            motion: None,
+            initial: InitialState::AtRest,
+            place: 0,
+            time,
+        }
+    }
+
+    /// The same with the clock of the rig: times that go by another rate, from another start, every so many samples; pressures changed.
+    fn recorded([rate, start]: [f64; 2], every: usize, factor: f64) -> Recording {
+        let inputs = asked();
+        let kept = || (0..inputs.time.len()).step_by(every);
+        let channel = |quantity: &str, unit, of: &dyn Fn(usize) -> f64| {
+            RecordedChannel::new(quantity, unit, kept().map(of).collect())
+        };
+        let time = kept().map(|i| start + rate * inputs.time[i]).collect();
+        let channels = vec![
+            channel(schema::SET_PRESSURE_GAUGE, Unit::Pascal, &|i| {
+                factor * inputs.set_pressure[i]
+            }),
+            channel(schema::VALVE_EXTENDS, Unit::One, &|i| {
+                f64::from(u8::from(inputs.extends[i]))
+            }),
+            channel(schema::SURFACE_POSITION, Unit::Metre, &|i| {
+                inputs.surface[i]
+            }),
+            channel(schema::MEASURED_STROKE, Unit::Metre, &|_| 0.01),
+        ];
+        Recording::new(time, channels, Vec::new()).unwrap()
+    }
+
+    fn checked(recording: &Recording) -> Result<(), String> {
+        let checked = check_inputs(Path::new("out.csv"), recording, &asked());
+        checked.map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn a_rig_has_its_own_clock_and_its_own_rate() {
+        for (clock, every) in [
+            ([1.0, 0.0], 1),
+            ([1.008, 0.0], 1),
+            ([0.995, 1_200.0], 1),
+            ([1.0, 0.0], 5),
+        ] {
+            assert_eq!(
+                checked(&recorded(clock, every, 1.0)),
+                Ok(()),
+                "{clock:?} {every}"
+            );
+        }
+    }
+
+    #[test]
+    fn other_inputs_than_asked_are_refused_with_the_first_place() {
+        let error = checked(&recorded([1.0, 0.0], 1, 1.05)).unwrap_err();
+        assert!(
+            error.contains("set_pressure_pa") && error.contains("105000"),
+            "{error}"
+        );
+        let error = checked(&recorded([1.2, 0.0], 1, 1.0)).unwrap_err();
+        assert!(error.contains("as it was asked for"), "{error}");
+    }
+}

@@ -218,3 +218,100 @@ impl Seen {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::test_evidence::evidence;
+
+    /// Two recordings on a surface at 20 mm, the second with pressures of its own, a reversal and a surface that moves.
+    fn recorded() -> Evidence {
+        let mut evidence = evidence(2);
+        let inputs = &mut evidence.recordings[1].inputs;
+        let count = inputs.time.len();
+        for index in 0..count {
+            let phase = 0.1 * index as f64;
+            inputs.set_pressure[index] = 1e5 + 400.0 * index as f64;
+            inputs.surface[index] = 0.02 + 0.004 * phase.sin();
+        }
+        inputs.extends[count - 3] = false;
+        evidence
+    }
+
+    #[test]
+    fn what_is_not_stated_is_as_far_as_the_recordings_went() {
+        let limits = Limits::new(&recorded(), &OperatingLimits::default(), Movable::ALL, 8.0);
+        let limits = limits.unwrap();
+        assert_eq!(limits.set_pressure, [0.0, 2e5]);
+        // 400 Pa every 4 ms; 4 mm at 0.1 rad every 4 ms.
+        assert!((limits.set_pressure_rate / 1e5 - 1.0).abs() < 1e-6);
+        let rate: f64 = 0.1 / 0.004;
+        assert!((limits.surface_motion[0] / (0.004 * rate) - 1.0).abs() < 0.01);
+        assert!((limits.surface_motion[1] / (0.004 * rate * rate) - 1.0).abs() < 0.01);
+        let [least, most] = limits.surface.unwrap();
+        assert!((least - 0.016).abs() < 2e-5 && (most - 0.024).abs() < 2e-5);
+        assert!(limits.retracts && !limits.without_workpiece);
+        assert_eq!(limits.duration, 8.0);
+        assert!((limits.step - 0.004).abs() < 1e-12);
+        let force = Channel::Force as usize;
+        let forces = recorded()
+            .recordings
+            .into_iter()
+            .flat_map(|m| m.readings[force].clone());
+        assert_eq!(limits.force, forces.fold(0.0, f64::max));
+    }
+
+    #[test]
+    fn what_is_stated_holds_and_what_is_to_be_left_alone_is() {
+        let stated = OperatingLimits {
+            set_pressure: Some(5e4),
+            set_pressure_rate: Some(1e4),
+            surface: [Some(0.018), None],
+            surface_speed: Some(0.01),
+            surface_acceleration: Some(0.5),
+            solenoid: Some(false),
+            without_workpiece: Some(true),
+            force: Some(12.0),
+            duration: Some(3.0),
+        };
+        let limits = Limits::new(&recorded(), &stated, Movable::ALL, 8.0).unwrap();
+        assert_eq!(limits.set_pressure, [0.0, 5e4]);
+        assert_eq!(limits.set_pressure_rate, 1e4);
+        assert_eq!(limits.surface.unwrap()[0], 0.018);
+        assert_eq!(limits.surface_motion, [0.01, 0.5]);
+        assert!(!limits.retracts && limits.without_workpiece);
+        assert_eq!((limits.force, limits.duration), (12.0, 3.0));
+        let only = |set_pressure, solenoid, surface| Movable {
+            set_pressure,
+            solenoid,
+            surface,
+        };
+        let valve = Limits::new(
+            &recorded(),
+            &OperatingLimits::default(),
+            only(false, true, false),
+            8.0,
+        );
+        let valve = valve.unwrap();
+        assert_eq!(valve.set_pressure[0], valve.set_pressure[1]);
+        assert_eq!(valve.surface_motion, [0.0; 2]);
+        assert!(!valve.without_workpiece);
+        let nothing = Limits::new(&recorded(), &stated, only(false, true, false), 8.0);
+        let error = nothing.unwrap_err().to_string();
+        assert!(error.contains("nothing may be moved"), "{error}");
+    }
+
+    #[test]
+    fn limits_that_contradict_one_another_are_refused() {
+        let stated = OperatingLimits {
+            surface: [Some(0.03), None],
+            ..OperatingLimits::default()
+        };
+        let error = Limits::new(&recorded(), &stated, Movable::ALL, 8.0).unwrap_err();
+        let error = error.to_string();
+        assert!(
+            error.contains("surface_least_m") && error.contains("0.03"),
+            "{error}"
+        );
+    }
+}
