@@ -138,9 +138,9 @@ class Study:
         return odds
 
     def odds_of(self, case):
-        """Odds of a case as it stands: a proposal that looks at one programme, which says them."""
+        """Odds of a case as it stands: a proposal that looks at few programmes, which says them."""
         out = self.work / "odds" / case.name
-        done = self.call("next", case, "--out", out, "--force", "--json", "--programmes", 1, codes=(0, 2))
+        done = self.call("next", case, "--out", out, "--force", "--json", "--programmes", 12, codes=(0, 2))
         if done.returncode:
             return None, None, done.stderr
         document = json.loads(done.stdout)
@@ -179,7 +179,8 @@ def main():
             continue
         above = [own for own in first["explanations"] if own["probability"] > 0.1]
         if not asked.healthy and len(above) < 2:
-            print(f"{case.name}: settled at once: {above[0]['effects'] if above else 'nothing above 10 %'}", flush=True)
+            settled = above[0]["effects"] if above else "nothing above 10 %"
+            print(f"{case.name}: {'right' if probability(first, truth) > 0.1 else 'wrong'} at once: {settled}", flush=True)
             continue
         odds, seconds, record = study.investigated(case, RUNS)
         row = {
