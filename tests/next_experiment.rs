@@ -271,7 +271,7 @@ fn what_cannot_be_asked_is_refused() {
         ),
         (
             "\n[limits]\nforce_n = 1e-6\n",
-            vec!["--may", "set-pressure"],
+            vec!["--may", "set_pressure"],
             vec!["force_n", "[limits]"],
         ),
         (

@@ -31,7 +31,7 @@ Examples:
   idc next assets/proof/cases/case-03 --out runs/next
   # Ten seconds at most, the valve left alone. (takes minutes)
   idc next assets/proof/cases/case-03 --out runs/ten --time 10s \\
-      --may set-pressure,surface";
+      --may set_pressure,surface";
 
 #[derive(Debug, Args)]
 pub(in super::super) struct NextArguments {

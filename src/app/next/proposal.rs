@@ -20,6 +20,7 @@ use crate::scenario::rig_file::RigFile;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum May {
     /// The set pressure.
+    #[value(name = "set_pressure")]
     SetPressure,
     /// The 5/2 valve.
     Solenoid,
