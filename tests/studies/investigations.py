@@ -152,15 +152,21 @@ def truth_of(sealed):
     return sorted(names)
 
 
+def effects_of(own):
+    """Names of an explanation's effects, a formula without its text."""
+    listed, formula, _ = own["effects"].partition("unlisted (")
+    return " + ".join(sorted((listed + ("unlisted" if formula else "")).split(" + ")))
+
+
 def probability(odds, truth):
     """Probability of the explanations that are the truth: its effects and no other."""
     wanted = " + ".join(truth) if truth else "nothing is missing"
-    return sum(own["probability"] for own in odds["explanations"] if " + ".join(sorted(own["effects"].split(" + "))) == wanted)
+    return sum(own["probability"] for own in odds["explanations"] if effects_of(own) == wanted)
 
 
 def others(odds, truth):
     wanted = " + ".join(truth) if truth else "nothing is missing"
-    rest = [own for own in odds["explanations"] if " + ".join(sorted(own["effects"].split(" + "))) != wanted]
+    rest = [own for own in odds["explanations"] if effects_of(own) != wanted]
     return [f"{own['effects']} {own['probability']:.2f}" for own in rest if own["probability"] > 0.1]
 
 

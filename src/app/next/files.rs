@@ -125,7 +125,7 @@ pub(super) fn json(proposal: &Proposal) -> Value {
         "duration_s": chosen.programme.duration(),
         "explanations": explanations,
         "none_of_these": round(*none_of_these),
-        "expected_probability_of_the_truth": round(proposal.expected_probability()),
+        "expected_probability_if_one_of_these": proposal.expected_probability().map(round),
         "information_on_which_nat": round(chosen.expected.which),
         "information_on_how_much_nat": round(chosen.expected.how_much),
         "largest_force_n": (chosen.force * 10.0).round() / 10.0,

@@ -101,7 +101,7 @@ struct Odds {
 struct Asked {
     name: String,
     duration: f64,
-    expected: f64,
+    expected: Option<f64>,
     instructions: Vec<String>,
 }
 
@@ -126,9 +126,16 @@ impl Stop {
 
 impl Odds {
     fn of(open: &[Open], none_of_these: f64) -> Self {
-        let named = |own: &Open| (own.name.clone(), own.probability);
+        // Curves without a formula have one name.
+        let mut named: Vec<(String, f64)> = Vec::new();
+        for own in open {
+            match named.iter_mut().find(|(name, _)| *name == own.name) {
+                Some((_, sum)) => *sum += own.probability,
+                None => named.push((own.name.clone(), own.probability)),
+            }
+        }
         Self {
-            open: open.iter().map(named).collect(),
+            open: named,
             none_of_these,
         }
     }
@@ -337,7 +344,7 @@ fn record(stop: &Stop, odds: &[Odds], asked: &[Asked], seconds: f64, found: &Dia
         json!({
             "recording": own.name,
             "duration_s": own.duration,
-            "expected_probability_of_the_truth": (own.expected * 1e4).round() / 1e4,
+            "expected_probability_if_one_of_these": own.expected.map(|p| (p * 1e4).round() / 1e4),
             "instructions": own.instructions,
         })
     });
@@ -350,7 +357,7 @@ fn record(stop: &Stop, odds: &[Odds], asked: &[Asked], seconds: f64, found: &Dia
     })
 }
 
-/// How each recording cut the explanations.
+/// Probability of each explanation after each recording.
 fn page(stop: &Stop, odds: &[Odds], asked: &[Asked], case: &str) -> Document<'static> {
     let last = odds.last();
     let best = last.and_then(|odds| odds.open.first());
@@ -390,15 +397,20 @@ fn page(stop: &Stop, odds: &[Odds], asked: &[Asked], case: &str) -> Document<'st
     let rows = names.iter().map(|name| row(name)).chain([none.collect()]);
     let table = Table::new("", Column::list(&heads), rows.collect());
     let mut sections = vec![Section::new(
-        "How each recording cut the explanations",
+        "Probability of each explanation after each recording",
         vec![Block::Table(table)],
     )];
     for own in asked {
-        let expected = format!(
-            "{:.1} s; expected to bring the right explanation to {}.",
-            own.duration,
-            percent(own.expected)
+        let expected = own.expected.map_or_else(
+            || "chosen to hold the one that was open to its numbers".to_owned(),
+            |p| {
+                format!(
+                    "expected to bring the right one, if it is one of these, to {}",
+                    percent(p)
+                )
+            },
         );
+        let expected = format!("{:.1} s; {expected}.", own.duration);
         let steps = own.instructions.iter().cloned();
         let blocks = [expected].into_iter().chain(steps).map(Block::Paragraph);
         sections.push(Section::new(

@@ -20,35 +20,39 @@ pub(super) const SETTLES: f64 = 0.95;
 
 /// All of it.
 pub(super) fn of_proposal(proposal: &Proposal, case: &str) -> Document<'static> {
-    let expected = proposal.expected_probability();
     let chosen = &proposal.chosen;
     let duration = chosen.programme.duration();
+    let likeliest = percent(proposal.open[0].probability);
+    let (verdict, is_settled) = match proposal.expected_probability() {
+        Some(expected) if expected >= SETTLES => (
+            format!(
+                "This recording of {duration:.1} s is expected to settle which explanation is right, if it is one of these: its probability comes to {}.",
+                percent(expected)
+            ),
+            true,
+        ),
+        Some(expected) => (
+            format!(
+                "No allowed recording is expected to settle which explanation is right; this one of {duration:.1} s brings its probability to {}, if it is one of these.",
+                percent(expected)
+            ),
+            false,
+        ),
+        None if proposal.open[0].probability >= SETTLES => (
+            format!(
+                "One explanation is open, at {likeliest}; this recording of {duration:.1} s is expected to tell most of its numbers."
+            ),
+            true,
+        ),
+        None => (
+            format!(
+                "One explanation is open, at {likeliest}, and none of these at {}: this recording of {duration:.1} s holds it to most of its numbers.",
+                percent(proposal.none_of_these)
+            ),
+            false,
+        ),
+    };
     let is_open = proposal.open.len() > 1;
-    let is_sure = proposal.open[0].probability >= SETTLES;
-    let is_settled = if is_open {
-        expected >= SETTLES
-    } else {
-        is_sure
-    };
-    let verdict = match (is_open, expected >= SETTLES) {
-        (false, _) if is_sure => format!(
-            "One explanation is open, at {}; this recording of {duration:.1} s is expected to tell most of its numbers.",
-            percent(proposal.open[0].probability)
-        ),
-        (false, _) => format!(
-            "One explanation is open, at {}, and none of these at {}: this recording of {duration:.1} s holds it to most of its numbers.",
-            percent(proposal.open[0].probability),
-            percent(proposal.none_of_these)
-        ),
-        (true, true) => format!(
-            "This recording of {duration:.1} s is expected to settle which explanation is right: its probability comes to {}.",
-            percent(expected)
-        ),
-        (true, false) => format!(
-            "No allowed recording is expected to settle which explanation is right; this one of {duration:.1} s brings its probability to {}.",
-            percent(expected)
-        ),
-    };
     let then = |place: usize| match is_open {
         true => percent(chosen.expected.odds[place][place]),
         false => String::new(),
@@ -153,6 +157,24 @@ fn panels(proposal: &Proposal) -> Vec<Panel<'static>> {
             format!("{} [{unit}]", CHANNEL_WORDS[channel]),
             own.collect(),
         ));
+        // Where they differ by less than a line is wide.
+        let first = &proposal.chosen.expected.readings[0][channel];
+        let others = proposal.open.iter().zip(&proposal.chosen.expected.readings);
+        let others = others.zip(ROLES).skip(1);
+        let others: Vec<Series<'static>> = others
+            .map(|((own, readings), role)| {
+                let pairs = readings[channel].iter().zip(first);
+                let values = pairs.map(|(own, first)| (own - first) / noise).collect();
+                series(&own.name, values, role)
+            })
+            .collect();
+        if !others.is_empty() {
+            all.push(panel(
+                "less the likeliest",
+                format!("{} [noise]", CHANNEL_WORDS[channel]),
+                others,
+            ));
+        }
     }
     all
 }

@@ -117,13 +117,15 @@ impl Proposal {
         })
     }
 
-    /// Probability that is expected of the true explanation afterwards [1].
-    pub(super) fn expected_probability(&self) -> f64 {
+    /// Probability that is expected of the true explanation afterwards, if it is one of these [1]; none where only one is open, which a recording may deny.
+    pub(super) fn expected_probability(&self) -> Option<f64> {
+        if self.open.len() < 2 {
+            return None;
+        }
         let own = self.open.iter().zip(&self.chosen.expected.odds).enumerate();
         let sum: f64 = self.open.iter().map(|own| own.probability).sum();
-        own.map(|(place, (open, odds))| open.probability * odds[place])
-            .sum::<f64>()
-            / sum
+        let right = own.map(|(place, (open, odds))| open.probability * odds[place]);
+        Some(right.sum::<f64>() / sum)
     }
 }
 

@@ -171,22 +171,14 @@ fn draws(open: &Open, random: &mut ChaCha8Rng) -> Vec<PlantParameters> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnosis::experiment::limits::Movable;
     use crate::diagnosis::test_evidence::plant;
     use nalgebra::DMatrix;
 
     fn limits() -> Limits {
         Limits {
-            movable: Movable::ALL,
-            step: 0.004,
-            set_pressure: [0.0, 3e5],
             set_pressure_rate: 1e8,
-            retracts: true,
-            surface: Some([0.012, 0.031]),
-            surface_motion: [0.2, 3.0],
-            without_workpiece: true,
-            force: 1e3,
             duration: 4.0,
+            ..Limits::of_tests()
         }
     }
 

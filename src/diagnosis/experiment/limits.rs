@@ -220,6 +220,25 @@ impl Seen {
 }
 
 #[cfg(test)]
+impl Limits {
+    /// Those of a bench on which everything may be moved, for tests.
+    pub(super) fn of_tests() -> Self {
+        Self {
+            movable: Movable::ALL,
+            step: 0.004,
+            set_pressure: [0.0, 3e5],
+            set_pressure_rate: 2e6,
+            retracts: true,
+            surface: Some([0.012, 0.031]),
+            surface_motion: [0.2, 3.0],
+            without_workpiece: true,
+            force: 1e3,
+            duration: 9.0,
+        }
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::diagnosis::test_evidence::evidence;

@@ -3,6 +3,7 @@
 use super::information::{Open, Sensors};
 use crate::diagnosis::answer::finding::Diagnosis;
 use crate::diagnosis::difference::localise::robust_rms;
+use crate::diagnosis::formula::unlisted::report::formula_text;
 use crate::diagnosis::recordings::evidence::by_channel;
 use crate::diagnosis::search::ranking::Ranked;
 use crate::effects::UNLISTED;
@@ -67,7 +68,14 @@ impl Diagnosis {
     fn open_of(&self, ranked: &Ranked, probability: f64) -> Open {
         let hypothesis = &ranked.hypothesis;
         let fit = &hypothesis.fit;
-        let names = hypothesis.effect_display_names();
+        let mut names = hypothesis.effect_display_names();
+        // Formulas are explanations of their own.
+        if let (Some(last), Some(formula)) = (
+            names.last_mut(),
+            hypothesis.unlisted().and_then(formula_text),
+        ) {
+            *last += &format!(" ({formula})");
+        }
         let first = hypothesis.tolerated(&self.nominal);
         Open {
             name: match names.is_empty() {

@@ -253,7 +253,8 @@ impl Programme {
     #[must_use]
     pub fn instructions(&self) -> Vec<String> {
         let bar = |pressure: f64| format!("{:.2}", pressure * 1e-5);
-        let mut lines = vec![match &self.surface {
+        let begin = "Begin with the slide retracted, at rest, and no set pressure.".to_owned();
+        let surface = match &self.surface {
             None => "Take the workpiece away.".to_owned(),
             Some(own) if own.peak_to_peak < 1e-6 => {
                 format!(
@@ -269,7 +270,8 @@ impl Programme {
                 own.frequency,
                 own.peak_to_peak * PI * own.frequency * 1e3
             ),
-        }];
+        };
+        let mut lines = vec![begin, surface];
         let mut from = 0.0;
         for own in &self.segments {
             let [start, end] = own.set_pressure;
@@ -290,30 +292,14 @@ impl Programme {
 
 #[cfg(test)]
 mod tests {
-    use super::super::limits::Movable;
     use super::*;
     use rand::SeedableRng;
     use rand_chacha::ChaCha8Rng;
 
-    fn limits() -> Limits {
-        Limits {
-            movable: Movable::ALL,
-            step: 0.004,
-            set_pressure: [0.0, 3e5],
-            set_pressure_rate: 2e6,
-            retracts: true,
-            surface: Some([0.012, 0.031]),
-            surface_motion: [0.2, 3.0],
-            without_workpiece: true,
-            force: 400.0,
-            duration: 9.0,
-        }
-    }
-
     /// Every programme that is drawn or changed, however often, keeps the limits; by the samples of its inputs, not by its own numbers.
     #[test]
     fn a_thousand_programmes_keep_their_limits() {
-        let limits = limits();
+        let limits = Limits::of_tests();
         let mut random = ChaCha8Rng::seed_from_u64(5);
         let mut programme = Programme::drawn(&limits, &mut random);
         let (mut retracts, mut moves, mut free) = (0, 0, 0);
@@ -356,10 +342,10 @@ mod tests {
     /// What is asked of a person is what the inputs do.
     #[test]
     fn instructions_cover_the_whole_of_it() {
-        let limits = limits();
+        let limits = Limits::of_tests();
         let programme = Programme::drawn(&limits, &mut ChaCha8Rng::seed_from_u64(2));
         let lines = programme.instructions();
-        assert_eq!(lines.len(), 1 + programme.segments.len());
+        assert_eq!(lines.len(), 2 + programme.segments.len());
         let end = format!("{:.2} s:", programme.duration());
         assert!(lines[lines.len() - 1].contains(&end), "{lines:?}");
     }
