@@ -16,6 +16,14 @@ pub enum RigError {
     /// Inputs or recording.
     #[error(transparent)]
     Recording(#[from] RecordingError),
+    /// A surface that is there for a part of the time.
+    #[error(
+        "{file}: `surface_m` is empty in some rows and not in others, expected a surface throughout or none"
+    )]
+    Surface {
+        /// The inputs.
+        file: String,
+    },
     /// The integrator.
     #[error(transparent)]
     Laboratory(#[from] LaboratoryError),
@@ -67,6 +75,13 @@ impl Recipe {
     /// An effect that does not exist.
     pub fn carry_out(&self, inputs: &Path, recording: &Path, turn: u64) -> Result<(), RigError> {
         let read = read_csv(inputs)?.recording;
+        let surface = read.values(schema::SURFACE_POSITION)?;
+        let rows = surface.iter().filter(|place| place.is_finite()).count();
+        if rows > 0 && rows < surface.len() {
+            return Err(RigError::Surface {
+                file: inputs.display().to_string(),
+            });
+        }
         let programme = programme(&read, self.rig().rate)?;
         let values: [Vec<f64>; CHANNELS.len()] = self.record(&programme, turn)?;
         Ok(write_measured(&programme, &values, recording)?)
