@@ -65,6 +65,7 @@ fn a_planted_force_is_found_reported_and_kept() {
             "comparison.parquet",
             "diagnosis.json",
             "diagnosis.rrd",
+            "explanations.json",
             "improved.toml",
             "prediction.csv",
             "report.html"

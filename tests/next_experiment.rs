@@ -162,16 +162,16 @@ fn assert_bench_carries_out(bench: &Bench, time: &[f64], pressures: &[f64]) {
         .map(|(time, stroke)| (own(schema::STROKE, *time) - stroke).abs());
     let off = off.fold(0.0, f64::max);
     assert!(
-        off < 0.02 * most,
+        off < 0.04 * most,
         "bench and prediction differ by {off} m of {most} m"
     );
 }
 
-/// Half a second leaves two wrong numbers of the sheet the likeliest, by half; what the device is asked next shows that the chamber's walls warm the air.
+/// Half a second leaves a delay open with any of many things beside it, and the delay alone unlikely; what the device is asked next shows that it is alone.
 #[test]
 fn a_rig_that_is_a_program_is_asked_until_it_is_settled() {
-    let bench = begun("case-10", "");
-    rig(&bench, &laboratory("case-10"));
+    let bench = begun("case-03", "");
+    rig(&bench, &laboratory("case-03"));
     let words = [
         "investigate",
         "case",
@@ -190,12 +190,9 @@ fn a_rig_that_is_a_program_is_asked_until_it_is_settled() {
         .as_f64()
         .unwrap();
     assert!(first < 0.5, "{first}");
-    // Of one explanation at even less than that, once "more than 99.9 %" was expected.
-    let expected = &record["asked"][0]["expected_probability_if_one_of_these"];
-    assert!(expected.is_null(), "{expected}");
     let last = record["odds"].as_array().unwrap().last().unwrap();
     let best = &last["explanations"][0];
-    assert_eq!(best["effects"], "heat_transfer", "{record:#}");
+    assert_eq!(best["effects"], "transport_delay", "{record:#}");
     assert!(best["probability"].as_f64().unwrap() > 0.95);
     assert_eq!(record["stop"], "settled");
     // The case that has grown comes to the same by itself.
@@ -207,8 +204,61 @@ fn a_rig_that_is_a_program_is_asked_until_it_is_settled() {
     );
     assert_eq!(again.code, 0, "{}", again.err);
     let again = json(&bench.path("again/diagnosis.json"));
-    assert_eq!(again["effects"][0]["name"], "heat_transfer");
+    assert_eq!(again["effects"][0]["name"], "transport_delay");
     assert_eq!(again["effects"].as_array().unwrap().len(), 1);
+}
+
+/// A diagnosis takes a recording in that comes to it, with what it comes to from the beginning; and says so where it cannot go on.
+#[test]
+fn a_diagnosis_goes_on_with_a_recording_more() {
+    let bench = begun("case-05", "");
+    let ok = |words: &[&str]| {
+        let done = bench.idc(words, &[]);
+        assert_eq!(done.code, 0, "{words:?}: {}", done.err);
+        done.err
+    };
+    ok(&["diagnose", "case", "--out", "found", "--quiet"]);
+    // The next experiment of a diagnosis is that of its case.
+    let few = ["--programmes", "2", "--time", "3s", "--quiet"];
+    ok(&[&["next", "found", "--out", "next"], &few[..]].concat());
+    let next = json(&bench.path("next/next.json"));
+    ok(&[&["next", "case", "--out", "same"], &few[..]].concat());
+    let same = json(&bench.path("same/next.json"));
+    let best = |next: &serde_json::Value| next["explanations"][0]["effects"].clone();
+    assert_eq!(best(&next), best(&same));
+    ok(&[
+        "laboratory",
+        "--rig",
+        "case-05",
+        "next/inputs.csv",
+        "more.csv",
+    ]);
+    let with = ["diagnose", "case", "--with-recording", "more.csv"];
+    let said = ok(&[&with[..], &["--out", "found", "--quiet"]].concat());
+    assert!(!said.contains("from the beginning"), "{said}");
+    ok(&[&with[..], &["--out", "anew", "--quiet"]].concat());
+    let [on, anew] =
+        ["found", "anew"].map(|own| json(&bench.path(&format!("{own}/diagnosis.json"))));
+    let named = |answer: &serde_json::Value| -> Vec<(String, f64)> {
+        let effects = answer["effects"].as_array().unwrap().iter();
+        effects
+            .map(|own| {
+                let name = own["name"].as_str().unwrap().to_owned();
+                (name, own["confidence"].as_f64().unwrap())
+            })
+            .collect()
+    };
+    let [on, anew] = [&on, &anew].map(named);
+    assert_eq!(on.len(), anew.len(), "{on:?} {anew:?}");
+    for ((name, odds), (other, expected)) in on.iter().zip(&anew) {
+        assert_eq!(name, other);
+        assert!((odds - expected).abs() < 0.02, "{name}: {odds} {expected}");
+    }
+    // Another sheet is another case.
+    let rig = std::fs::read_to_string(bench.path("case/rig.toml")).unwrap();
+    bench.write("case/rig.toml", format!("{rig}\n# Measured anew.\n"));
+    let said = ok(&[&with[..], &["--out", "found", "--quiet"]].concat());
+    assert!(said.contains("rig.toml has changed"), "{said}");
 }
 
 /// Whatever a rig's program does wrong is one message, and ends with exit code 2.

@@ -47,6 +47,10 @@ pub(super) struct DiagnoseArguments {
     /// Scenario file of a recorded cell (kind = "recorded_cell"): cases then hold recordings alone, and one without measured columns is to be predicted.
     #[arg(long)]
     scenario: Option<PathBuf>,
+    /// A recording beside those that rig.toml names, as often as needed. Where --out holds a diagnosis of the others, it is gone on from and takes the
+    /// recording in: what is settled stays, and odds are those of all recordings.
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["all", "scenario", "resume"])]
+    with_recording: Vec<PathBuf>,
     /// Diagnose every folder in it that holds a rig.toml, an arm.toml or a postures.toml, each into a folder of its name, and state what they show together of parts that they share.
     #[arg(long)]
     all: bool,
@@ -138,11 +142,17 @@ pub(super) fn run(arguments: &DiagnoseArguments) -> Result<ExitCode, AppError> {
     let _interruptible = Interruptible::of_one("diagnosis", &out);
     let line = StagedLine::new(&stages::first(), silent);
     let tried = arguments.tried.clone();
-    let prepared = one::Prepared::new(
-        &arguments.case,
+    let mut prepared = one::Prepared::new(
+        (&arguments.case, &arguments.with_recording),
         (cell, tried, arguments.limit()),
         Some((&out, policy)),
     )?;
+    if let Some(why) = prepared.begins_anew()? {
+        say_aside(&format!(
+            "note: {}: {why}; diagnosed from the beginning",
+            out.display()
+        ));
+    }
     if policy == OverwritePolicy::Keep {
         match prepared.existing()? {
             Some(Ok(existing)) => {
@@ -198,7 +208,7 @@ pub(super) fn answer_case(
     out: &std::path::Path,
 ) -> Result<crate::diagnosis::answer::Answer, AppError> {
     let prepared = one::Prepared::new(
-        case,
+        (case, &[]),
         (None, None, EffortLimit::None),
         Some((out, OverwritePolicy::Replace)),
     )?;

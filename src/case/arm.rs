@@ -142,6 +142,7 @@ impl ArmCase {
             prediction,
             comparison,
             diagnosis: None,
+            explanations: None,
             plant: None,
             beside,
         })

@@ -202,6 +202,7 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, CaseErr
                 .collect(),
             tried: None,
             data_faults: Vec::new(),
+            kept: Vec::new(),
             rate: scenario.sample_rate,
         },
         axes: axes.into_iter().next(),

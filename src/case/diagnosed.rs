@@ -5,6 +5,8 @@ use crate::diagnosis::answer::finding::Diagnosis;
 use crate::diagnosis::difference::comparison::Comparison;
 use crate::plant::PlantParameters;
 
+use super::explanations::Explanations;
+
 /// Name of the improved model's file.
 pub const IMPROVED: &str = "improved.toml";
 /// Name of the table of a recorded arm's drives.
@@ -27,6 +29,8 @@ pub struct Diagnosed {
     pub comparison: Comparison,
     /// The search with all its explanations; none of a contact flange or an arm.
     pub diagnosis: Option<Diagnosis>,
+    /// What a diagnosis with a recording more goes on from; none but of a device on a bench.
+    pub explanations: Option<Explanations>,
     /// The improved model; none of a contact flange or an arm.
     pub plant: Option<PlantParameters>,
     /// Further files by their names; none but of an arm.

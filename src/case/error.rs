@@ -51,6 +51,22 @@ pub enum CaseError {
         /// The case's folder.
         folder: String,
     },
+    /// Recordings beside those of a case that takes none.
+    #[error(
+        "--with-recording: {folder} is no case of a whole device on a bench; expected one (a rig.toml without `device.parts`): name the recordings of any other in its own file"
+    )]
+    NothingToAddTo {
+        /// The case's folder.
+        folder: String,
+    },
+    /// Explanations of a diagnosis that cannot be gone on from.
+    #[error("{file}: {reason}; expected what `idc diagnose` writes: diagnose the case again")]
+    Explanations {
+        /// The file.
+        file: String,
+        /// Why.
+        reason: String,
+    },
     /// A log of an arm that is too short.
     #[error(
         "{file}: {found} samples are too few to diagnose an arm from, expected at least {least}: record longer, or leave it out of `recordings.fit`"

@@ -9,6 +9,7 @@ mod cell_account;
 mod cell_drives;
 mod diagnosed;
 mod error;
+mod explanations;
 mod flange_prediction;
 mod ground;
 mod improved;
@@ -31,6 +32,7 @@ pub use band::{Predicted, predicted_by};
 pub use cell::is_cell_case;
 pub use diagnosed::{DRIVES, Diagnosed, IDENTIFIED, IMPROVED, IMPROVED_ARM};
 pub use error::CaseError;
+pub use explanations::{EXPLANATIONS, Explanations, Kept};
 pub use flange_prediction::{FlangePrediction, predict_flange_run};
 pub use postures::{
     POSTURES, PosturesCase, PosturesDiagnosed, PosturesPrediction, is_postures_case,
@@ -75,6 +77,8 @@ pub struct Case {
     /// Name of the folder.
     pub name: String,
     folder: PathBuf,
+    /// Recordings beside those that its file names.
+    added: Vec<PathBuf>,
     kind: Kind,
 }
 
@@ -145,6 +149,43 @@ impl Case {
         Ok(Self::new(folder, Kind::Rig { rig, input }))
     }
 
+    /// Reads a case of a device on a bench, with recordings beside those that its rig file names.
+    ///
+    /// # Errors
+    /// A case of another kind, what is wrong with rig file or recordings.
+    pub fn with_recordings(folder: &Path, recordings: &[PathBuf]) -> Result<Self, CaseError> {
+        if recordings.is_empty() {
+            return Self::from_folder(folder);
+        }
+        let refused = || CaseError::NothingToAddTo {
+            folder: folder.display().to_string(),
+        };
+        if is_arm_case(folder) {
+            return Err(refused());
+        }
+        let mut rig = Box::new(rig_of(folder)?);
+        if rig.plant.parts != DeviceParts::Whole {
+            return Err(refused());
+        }
+        rig.fit = to_fit(&rig, folder)?;
+        let names = recordings.iter().map(|own| explanations::whole(own));
+        rig.fit.extend(names.map(|own| own.display().to_string()));
+        let input = Box::new(rig::input_of(&rig, folder)?);
+        prepare(&input)?;
+        Ok(Self {
+            added: recordings.to_vec(),
+            ..Self::new(folder, Kind::Rig { rig, input })
+        })
+    }
+
+    /// Has the diagnosis go on from explanations that were found in a part of the recordings.
+    pub fn go_on_from(&mut self, explanations: &Explanations) {
+        if let Kind::Rig { input, .. } = &mut self.kind {
+            let kept = explanations.explanations.iter();
+            input.kept = kept.map(|own| own.explanation.clone()).collect();
+        }
+    }
+
     /// Fits effects that are known to the recordings, without a search; none where only a search can.
     ///
     /// # Errors
@@ -211,6 +252,7 @@ impl Case {
         Self {
             name: whole.file_name().unwrap_or_default().display().to_string(),
             folder: folder.to_owned(),
+            added: Vec::new(),
             kind,
         }
     }
@@ -367,6 +409,10 @@ pub fn diagnose(
         Kind::Arm(case) => case.diagnosed(start, observer)?,
     };
     diagnosed.answer.details.case.clone_from(&case.name);
+    if let (Some(diagnosis), Some(_)) = (&diagnosed.diagnosis, case.bench_rig()) {
+        let of = (case.folder.as_path(), &case.added[..]);
+        diagnosed.explanations = Some(Explanations::of(of, diagnosis, &provenance));
+    }
     diagnosed.answer.details.provenance = provenance;
     Ok(diagnosed)
 }
@@ -475,6 +521,7 @@ fn of_plant(
         answer: reported(answer, faults),
         improved,
         diagnosis: Some(diagnosis),
+        explanations: None,
         plant: Some(plant),
         beside: Vec::new(),
     }
@@ -565,6 +612,7 @@ fn of_flange_runs(
         answer,
         comparison,
         diagnosis: None,
+        explanations: None,
         plant: None,
         beside: Vec::new(),
     })

@@ -174,11 +174,19 @@ fn found(
         .filter(|(remaining, _)| !remaining.is_noise());
     let Some((mut remaining, mut seed)) = remaining else {
         let search = search_of(case, &evidence, settings);
-        let (mut found, roughly, model_error) = search.run_with_rough(observer);
+        let resumed = match case.kept.is_empty() {
+            true => None,
+            false => search.resumed(&case.kept, observer),
+        };
+        let (mut found, roughly, model_error) =
+            resumed.unwrap_or_else(|| search.run_with_rough(observer));
         let weighed = Search {
             model_error: model_error.clone(),
             ..search.clone()
         };
+        if settings.rivals {
+            weighed.add_rivals(&mut found, observer);
+        }
         if let Some(effect) = case.tried {
             weighed.add_tried(&mut found, effect, observer);
         }

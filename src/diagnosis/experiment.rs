@@ -2,6 +2,7 @@
 
 pub mod choice;
 pub mod information;
+pub mod inseparable;
 pub mod limits;
 pub mod next_experiment;
 mod open;

@@ -4,10 +4,12 @@ pub mod detectable;
 pub(super) mod finish;
 mod formulas;
 pub(super) mod influence;
+pub mod kept;
 pub mod known;
 mod modular;
 pub mod progress;
 pub mod ranking;
+mod rivals;
 pub mod ruled_out;
 pub(super) mod scale;
 mod screen;
@@ -166,20 +168,32 @@ impl Search<'_> {
         }
         self.eliminate(&mut full, observer);
         self.add_plainer(&mut full, &all, observer);
+        let found = (full, all);
+        self.concluded(found, (&unexplained, &scale), &mut climb.asked, observer)
+    }
+
+    /// From full fits to an answer.
+    fn concluded(
+        &self,
+        (mut full, all): (Vec<Hypothesis>, Vec<Hypothesis>),
+        (unexplained, scale): (&Hypothesis, &Scale),
+        asked: &mut Vec<Vec<&'static str>>,
+        observer: &mut Observer<'_>,
+    ) -> (Vec<Hypothesis>, Vec<RoughFit>, ModelError) {
+        let noise = rough_noise(self.evidence);
         let shows_when_held = |h: &Hypothesis| h.fit.rough - noise > scale.rough_spread();
         if (full.first()).is_some_and(|best| !shows_when_held(best) && !scale.is_adequate(best)) {
-            self.add_small(&mut full, &scale, observer);
+            self.add_small(&mut full, scale, observer);
         }
         let weighed = self.weighed(&mut full, observer);
-        weighed.add_small(&mut full, &scale, observer);
+        weighed.add_small(&mut full, scale, observer);
         full.sort_by(|a, b| weighed.score(a).total_cmp(&weighed.score(b)));
-        weighed.prefer_plain(&mut full, &scale);
-        let fewer = (&unexplained, &all[..], &mut climb.asked);
-        weighed.add_unlisted(&mut full, fewer, &scale, observer);
+        weighed.prefer_plain(&mut full, scale);
+        weighed.add_unlisted(&mut full, (unexplained, &all[..], asked), scale, observer);
         weighed.add_nominal(&mut full, observer);
-        weighed.drop_below_noise(&mut full, &scale, observer);
-        weighed.add_close(&mut full, &all, &scale, observer);
-        let roughly = self.tried_roughly(&full, &all, (&unexplained, noise));
+        weighed.drop_below_noise(&mut full, scale, observer);
+        weighed.add_close(&mut full, &all, scale, observer);
+        let roughly = self.tried_roughly(&full, &all, (unexplained, noise));
         (full, roughly, weighed.model_error)
     }
 

@@ -27,6 +27,8 @@ pub struct Settings {
     pub rounds: usize,
     /// Model evaluations spent on formulas past which none is asked for, but for the last resort beside nothing [1]: of 12 laboratory laws one took 7877 in all, a device with rough edges that no law explains 31 000.
     pub formulas_within: u64,
+    /// Whether every explanation that could stand in the place of the best is fitted in full, for an experiment to tell them apart.
+    pub rivals: bool,
     /// Limit of its effort.
     pub limit: EffortLimit,
 }
@@ -45,6 +47,7 @@ impl Settings {
         least_odds: 0.01,
         rounds: 3,
         formulas_within: 12_000,
+        rivals: false,
         limit: EffortLimit::None,
     };
 }

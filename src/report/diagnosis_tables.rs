@@ -104,7 +104,7 @@ fn prediction(errors: &[PredictionError], reference_noise: &str) -> Option<Table
 }
 
 /// The smallest effects that the recordings would have shown.
-pub(super) fn detectable<'a>(answer: &Answer) -> Option<Section<'a>> {
+pub fn detectable<'a>(answer: &Answer) -> Option<Section<'a>> {
     let all = &answer.details.detectable;
     let row = |smallest: &DetectableReport| {
         vec![

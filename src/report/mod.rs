@@ -19,6 +19,7 @@ pub use assumed::assumed;
 pub use comparison::{ComparedNumber, Comparison, MOST_DRAWN};
 pub use diagnosis::diagnosis;
 pub use diagnosis_charts::{lacking, robust_range, variable};
+pub use diagnosis_tables::detectable;
 pub use provenance::{provenance, sources};
 pub use run::{RunReport, drives};
 pub use signals::{FORCE, Line, PRESSURE, ROLES, STROKE, chart_groups};

@@ -1,14 +1,17 @@
-"""Investigations of laboratory devices whose first recordings leave it open what is missing: by experiments of the program's own choice, and by the fixed
+"""Investigations of laboratory devices whose first recording leaves it open what is missing: by experiments of the program's own choice, and by the fixed
 programme of stairs, ride and cycle repeated for the same recorded time.
 
-    python tests/studies/investigations.py --idc target/release/idc --work build/investigations [--draw 11] [--wanted 10] [--devices 80] [--duration 2]
+    python tests/studies/investigations.py --idc target/release/idc --work build/investigations --list catalogue [--draw 11] [--wanted 10] [--devices 80]
 
-Devices are those of `idc laboratory --devices`, or with --laws those of `--laws`; the first that leave two explanations above 10 % are taken, and it is said of how many.
-Printed for each: the truth, the probability on it before and after, what else is above 10 %, seconds recorded. The summary compares both ways.
+Lists: catalogue (effects with others of their kind beside them), sheet (a number of the rig file off by more than its tolerance), sensors (sensors and clocks),
+laws (laws that no list holds). The first recording is the beginning of the stairs, --first seconds of it. The first devices of a draw that leave two explanations
+above 10 % are taken, "none of these" being one, and it is said of how many. Printed for each: the truth, the probability on it before and after, what else is above
+10 %, seconds recorded. The summary compares both ways.
 """
 
 import argparse
 import json
+import random
 import re
 import shutil
 import subprocess
@@ -18,6 +21,52 @@ from pathlib import Path
 RUNS = 2
 LONGEST_S = 15
 
+SENSORS = {
+    "force_sensor_bias_drift",
+    "force_sensor_gain_error",
+    "force_sensor_lag",
+    "force_sensor_saturation",
+    "inertial_crosstalk",
+    "stroke_sensor_gain_error",
+    "channel_time_offset",
+}
+# Effects of one kind with others: laws of friction, of leaks and heat, of air's ways, of the regulator, of loads, of the contact.
+CATALOGUE = {
+    "coulomb_viscous_friction",
+    "stribeck_friction",
+    "presliding_hysteresis",
+    "pressure_dependent_friction",
+    "external_leakage",
+    "cross_piston_leakage",
+    "heat_transfer",
+    "supply_restriction",
+    "exhaust_restriction",
+    "extra_dead_volume",
+    "hose_volume",
+    "supply_droop",
+    "transport_delay",
+    "regulator_hysteresis",
+    "regulator_rate_limit",
+    "regulator_second_order",
+    "return_spring_load",
+    "axial_force_offset",
+    "moving_mass_error",
+    "contact_stiffness_error",
+    "hertzian_contact",
+    "surface_offset",
+    "end_cushioning",
+    "solenoid_switching_delay",
+}
+# Numbers of the sheet, and what a diagnosis calls them.
+SHEET = {
+    "bore_m": "number_off (cylinder.bore_m)",
+    "rod_m": "number_off (cylinder.rod_m)",
+    "discharge_coefficient": "number_off (valve.discharge_coefficient)",
+    "moving_mass_kg": "moving_mass_error",
+    "gravity_along_axis_m_per_s2": "number_off (cylinder.gravity_along_axis_m_per_s2)",
+    "temperature_k": "number_off (gas.temperature_k)",
+}
+
 
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -26,7 +75,8 @@ def arguments():
     parser.add_argument("--draw", type=int, default=11)
     parser.add_argument("--wanted", type=int, default=10)
     parser.add_argument("--devices", type=int, default=80)
-    parser.add_argument("--laws", action="store_true")
+    parser.add_argument("--list", choices=("catalogue", "sheet", "sensors", "laws"), default="catalogue")
+    parser.add_argument("--first", type=float, default=0.48, help="seconds of the first recording")
     parser.add_argument("--conditions", default="laboratory")
     parser.add_argument("--duration", type=float, default=2.0)
     parser.add_argument("--smallest", type=float, default=0.02, help="smallest effect, as a share of the largest that is plausible")
@@ -41,9 +91,9 @@ class Study:
         self.idc = asked.idc.resolve()
         self.work = asked.work.resolve()
         self.work.mkdir(parents=True, exist_ok=True)
-        kind = "--laws" if asked.laws else "--devices"
+        kind = "--laws" if asked.list == "laws" else "--devices"
         self.draw = [kind, str(asked.devices), "--draw", str(asked.draw), "--duration-s", str(asked.duration)]
-        if not asked.laws:
+        if asked.list != "laws":
             self.draw += ["--conditions", asked.conditions, "--smallest", str(asked.smallest), "--largest", str(asked.largest)]
 
     def call(self, *words, codes=(0,)):
@@ -74,6 +124,11 @@ class Study:
             pressures += [float(row[rows[0].index("set_pressure_pa")]) for row in rows[1:]]
             if "force_n" in rows[0]:
                 forces += [float(row[rows[0].index("force_n")] or 0) for row in rows[1:]]
+        stairs = case / "stairs.csv"
+        rows = stairs.read_text().splitlines()
+        stairs.write_text("\n".join([rows[0], *(row for row in rows[1:] if float(row.split(",")[0]) <= self.asked.first)]) + "\n")
+        if self.asked.list == "sheet":
+            text = self.other_number(case, text)
         lines = ['fit = ["stairs.csv"]' if line.startswith("fit") else line for line in text.splitlines() if not line.startswith("predict")]
         limits = {
             "set_pressure_pa": max(pressures),
@@ -87,6 +142,19 @@ class Study:
             "force_n": round(1.1 * max(forces), 1),
         }
         rig.write_text("\n".join([*lines, "", "[limits]", *(f"{key} = {value}" for key, value in limits.items())]) + "\n")
+
+    def other_number(self, case, text):
+        """The rig file with one number off by 4 to 12 %."""
+        chance = random.Random(f"{self.asked.draw} {case.name}")
+        keys = [key for key in SHEET if re.search(rf"^{key} = ", text, re.M)]
+        key = chance.choice(keys)
+        factor = 1 + chance.choice((-1, 1)) * chance.uniform(0.04, 0.12)
+
+        def other(found):
+            return f"{found.group(1)}{float(found.group(2)) * factor:.6g}"
+
+        (case / "off.txt").write_text(SHEET[key] + "\n")
+        return re.sub(rf"^({key} = (?:{{ value = )?)([-0-9.e]+)", other, text, count=1, flags=re.M)
 
     def rig(self, case):
         """A program that is the device of a case."""
@@ -147,9 +215,19 @@ class Study:
         return document, None, None
 
 
-def truth_of(sealed):
-    names = [effect["name"] for effect in sealed["effects"]]
-    return sorted(names)
+def truth_of(case, sealed):
+    off = case / "off.txt"
+    if off.exists():
+        return [off.read_text().strip()]
+    return sorted(effect["name"] for effect in sealed["effects"])
+
+
+def is_of(listed, truth, sealed):
+    """Whether a device is of a list: those of the sheet lack nothing, but for the number that is off."""
+    if listed == "sheet":
+        return not sealed["effects"]
+    kinds = {"catalogue": CATALOGUE, "sensors": SENSORS}.get(listed)
+    return bool(truth) and (kinds is None or set(truth) <= kinds)
 
 
 def effects_of(own):
@@ -166,8 +244,17 @@ def probability(odds, truth):
 
 def others(odds, truth):
     wanted = " + ".join(truth) if truth else "nothing is missing"
+    if odds["none_of_these"] > 0.1:
+        odds = {"explanations": [*odds["explanations"], {"effects": "none of these", "probability": odds["none_of_these"]}]}
     rest = [own for own in odds["explanations"] if effects_of(own) != wanted]
     return [f"{own['effects']} {own['probability']:.2f}" for own in rest if own["probability"] > 0.1]
+
+
+def stated_surely(row):
+    """Of the explanation that is stated at 0.9 and more in the end whether it is right."""
+    if row["after"] >= 0.9:
+        return [True]
+    return [False] if row["best"][1] >= 0.9 else []
 
 
 def main():
@@ -175,8 +262,8 @@ def main():
     study = Study(asked)
     rows, drawn = [], 0
     for case, sealed in study.cases():
-        truth = truth_of(sealed)
-        if bool(asked.healthy) != (not truth):
+        truth = [] if asked.healthy else truth_of(case, sealed)
+        if sealed["effects"] if asked.healthy else not is_of(asked.list, truth, sealed):
             continue
         drawn += 1
         first, _, refused = study.odds_of(case)
@@ -184,8 +271,8 @@ def main():
             print(f"{case.name}: {refused.strip()}", file=sys.stderr)
             continue
         above = [own for own in first["explanations"] if own["probability"] > 0.1]
-        if not asked.healthy and len(above) < 2:
-            settled = above[0]["effects"] if above else "nothing above 10 %"
+        if not asked.healthy and len(above) + (first["none_of_these"] > 0.1) < 2:
+            settled = above[0]["effects"] if above else "none of these"
             print(f"{case.name}: {'right' if probability(first, truth) > 0.1 else 'wrong'} at once: {settled}", flush=True)
             continue
         odds, seconds, record = study.investigated(case, RUNS)
@@ -195,11 +282,13 @@ def main():
             "before": probability(first, truth),
             "after": probability(odds[-1], truth),
             "others": others(odds[-1], truth),
+            "best": [[own["effects"], own["probability"]] for own in odds[-1]["explanations"][:1]][0],
             "seconds": seconds,
             "stop": record["stop"],
         }
         if seconds > 0 and not asked.healthy:
-            row["repeated"] = probability(study.repeated(case, seconds), truth)
+            again = study.repeated(case, seconds)
+            row["repeated"] = None if again is None else probability(again, truth)
         rows.append(row)
         print(json.dumps(row), flush=True)
         if len(rows) >= (asked.healthy or asked.wanted):
@@ -207,7 +296,12 @@ def main():
     count = len(rows)
     if not count:
         raise SystemExit("no case was taken")
-    mean = lambda key: sum(row.get(key, row["before"]) for row in rows) / count  # noqa: E731
+    stated = [right for row in rows for right in stated_surely(row)]
+
+    def mean(key):
+        own = [row[key] if row.get(key) is not None else row["before"] for row in rows]
+        return sum(own) / count
+
     summary = {
         "drawn": drawn,
         "taken": count,
@@ -215,6 +309,8 @@ def main():
         "after": round(mean("after"), 3),
         "repeated": round(mean("repeated"), 3),
         "without_others_above_10_percent": sum(not row["others"] for row in rows),
+        "stated_at_0.9": len(stated),
+        "of_these_right": sum(stated),
         "mean_seconds": round(sum(row["seconds"] for row in rows) / count, 1),
     }
     print(json.dumps(summary))

@@ -122,7 +122,7 @@ fn one(
     out: &Path,
     policy: OverwritePolicy,
 ) -> Result<Done, AppError> {
-    let prepared = Prepared::new(case, (cell, None, limit), Some((out, policy)))?;
+    let prepared = Prepared::new((case, &[]), (cell, None, limit), Some((out, policy)))?;
     let mut again = None;
     if policy == OverwritePolicy::Keep {
         match prepared.existing()? {

@@ -74,7 +74,7 @@ pub fn diagnose_case(
         .as_ref()
         .map(|(out, force)| (out.as_path(), OverwritePolicy::of(*force)));
     let prepared = Prepared::new(
-        &request.folder,
+        (&request.folder, &[]),
         (cell.as_ref(), tried, request.limit()),
         out,
     )?;

@@ -12,8 +12,8 @@ use super::postures_picture;
 use super::removal_picture;
 use super::unlisted_picture::picture;
 use crate::case::{
-    Case, Diagnosed, IMPROVED, PosturesCase, PosturesDiagnosed, RIG, RemovalCase, RemovalDiagnosed,
-    diagnose, is_arm_case, is_postures_case,
+    Case, Diagnosed, EXPLANATIONS, Explanations, IMPROVED, PosturesCase, PosturesDiagnosed, RIG,
+    RemovalCase, RemovalDiagnosed, diagnose, is_arm_case, is_postures_case,
 };
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::answer::account::SectionKind;
@@ -47,6 +47,8 @@ pub(super) struct Prepared {
     folder: Option<OutputFolder>,
     /// What is asked for besides the files, as the seal has it.
     asked: String,
+    /// Explanations of an earlier diagnosis in the folder, where recordings have come since.
+    earlier: Option<Explanations>,
 }
 
 /// Whether this is a folder with a case.
@@ -91,7 +93,7 @@ pub(super) struct Existing {
 impl Prepared {
     /// Reads rig and recordings and takes a law to be tried, then makes the folder: bad input leaves nothing behind.
     pub(super) fn new(
-        folder: &Path,
+        (folder, recordings): (&Path, &[PathBuf]),
         (cell, tried, limit): (Option<&LoadedCell>, Option<LawText>, EffortLimit),
         out: Option<(&Path, OverwritePolicy)>,
     ) -> Result<Self, AppError> {
@@ -111,7 +113,7 @@ impl Prepared {
         } else {
             let mut case = match cell {
                 Some(cell) => Case::of_cell(folder, cell)?,
-                None => Case::from_folder(folder)?,
+                None => Case::with_recordings(folder, recordings)?,
             };
             if let Some(law) = tried {
                 asked += &format!(" {law:?}");
@@ -119,8 +121,17 @@ impl Prepared {
             }
             Subject::Recordings(Box::new(case))
         };
-        let prepared = out.map(|(out, policy)| prepare(folder, out, policy));
+        // What is gone on from is taken in by what comes of it.
+        let state = out.map(|(out, _)| out.join(EXPLANATIONS));
+        let state = state.filter(|state| !recordings.is_empty() && state.is_file());
+        let earlier = state.map(|state| Explanations::read(&state)).transpose()?;
+        let policy = |policy| match &earlier {
+            Some(_) => OverwritePolicy::Replace,
+            None => policy,
+        };
+        let prepared = out.map(|(out, asked)| prepare(folder, out, policy(asked)));
         Ok(Self {
+            earlier,
             subject,
             settings: Settings {
                 limit,
@@ -129,6 +140,18 @@ impl Prepared {
             folder: prepared.transpose()?,
             asked,
         })
+    }
+
+    /// Goes on from the explanations of the others where recordings have come; or why it cannot, where it could be expected to.
+    pub(super) fn begins_anew(&mut self) -> Result<Option<String>, AppError> {
+        let (Some(earlier), Subject::Recordings(case)) = (&self.earlier, &mut self.subject) else {
+            return Ok(None);
+        };
+        let outdated = earlier.outdated(&case.provenance()?);
+        if outdated.is_none() {
+            case.go_on_from(earlier);
+        }
+        Ok(outdated)
     }
 
     /// The diagnosis that stands complete, of the same files and settings; or why what stands is none. Neither where nothing stands.
@@ -190,6 +213,7 @@ impl Prepared {
             answer,
             improved,
             prediction: prediction.as_deref(),
+            explanations: None,
             beside: &[],
             picture: None,
             fit_picture: Some(&picture),
@@ -218,6 +242,7 @@ impl Prepared {
             answer,
             improved,
             prediction: prediction.as_deref(),
+            explanations: None,
             beside: &[],
             picture: None,
             fit_picture: picture.as_deref(),
@@ -241,9 +266,12 @@ impl Prepared {
             prediction,
             comparison,
             diagnosis,
+            explanations,
             beside,
             ..
         } = diagnosed;
+        let explanations = explanations.map(|own| own.text());
+        let explanations = explanations.and_then(|text| answer.kept(EXPLANATIONS, text));
         let mut fit = flange_picture::picture(&answer, &comparison);
         let mut shape = None;
         if let Some(diagnosis) = &diagnosis {
@@ -263,6 +291,7 @@ impl Prepared {
             answer,
             improved,
             prediction: prediction.as_deref(),
+            explanations: explanations.as_deref(),
             beside: &beside,
             picture: shape.as_deref(),
             fit_picture: fit.as_deref(),

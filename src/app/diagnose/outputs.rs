@@ -6,7 +6,7 @@ use super::super::error::AppError;
 use super::super::files::{BALANCE, BOARD, COMPARISON, DIAGNOSIS, OutputFolder, REPORT};
 use super::board::board;
 use super::comparison_files::{write_balances, write_recordings};
-use crate::case::{DRIVES, IDENTIFIED, IMPROVED, IMPROVED_ARM};
+use crate::case::{DRIVES, EXPLANATIONS, IDENTIFIED, IMPROVED, IMPROVED_ARM};
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::difference::comparison::Comparison;
 use crate::document::{Document, Style, html, text};
@@ -23,8 +23,9 @@ const PICTURE: &str = "unlisted.svg";
 /// Before and after, of a part of the device.
 const FIT_PICTURE: &str = "fit.svg";
 /// All that a diagnosis may write.
-pub(super) const NAMES: [&str; 13] = [
+pub(super) const NAMES: [&str; 14] = [
     ACCOUNT,
+    EXPLANATIONS,
     IMPROVED,
     IMPROVED_ARM,
     PREDICTION,
@@ -40,7 +41,14 @@ pub(super) const NAMES: [&str; 13] = [
 ];
 
 /// Files with numbers to go on with, whose content diagnosis.json seals. (Others hold the time that it took.)
-const SEALED: [&str; 5] = [IMPROVED, IMPROVED_ARM, PREDICTION, DRIVES, IDENTIFIED];
+const SEALED: [&str; 6] = [
+    IMPROVED,
+    IMPROVED_ARM,
+    PREDICTION,
+    EXPLANATIONS,
+    DRIVES,
+    IDENTIFIED,
+];
 
 /// The first of the files of every diagnosis that a folder does not hold.
 pub(super) fn lacking(folder: &Path) -> Option<&'static str> {
@@ -56,6 +64,8 @@ pub(super) struct Outputs<'a> {
     pub improved: String,
     /// prediction.csv.
     pub prediction: Option<&'a str>,
+    /// explanations.json.
+    pub explanations: Option<&'a str>,
     /// drives.csv, identified.urdf, improved_arm.toml.
     pub beside: &'a [(&'static str, String)],
     /// unlisted.svg.
@@ -124,6 +134,7 @@ impl Outputs<'_> {
             (DRIVES, beside(DRIVES)),
             (IDENTIFIED, beside(IDENTIFIED)),
             (PREDICTION, self.prediction),
+            (EXPLANATIONS, self.explanations),
             (PICTURE, self.picture),
             (FIT_PICTURE, self.fit_picture),
         ];

@@ -1,6 +1,6 @@
 //! `idc next` from its arguments to its files.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
@@ -9,12 +9,13 @@ use super::super::files::{OutputFolder, OverwritePolicy, output_folder};
 use super::super::interrupt::Interruptible;
 use super::super::output::say;
 use super::super::progress;
+use super::super::terminal::say_aside;
 use super::error::NextError;
 use super::files::NAMES;
 use super::outputs::write;
 use super::page;
 use super::proposal::{Allowed, Proposal, bench_rig, diagnosed};
-use crate::case::Case;
+use crate::case::{Case, EXPLANATIONS, Explanations};
 use crate::document::{Style, text};
 
 /// For the help.
@@ -24,7 +25,8 @@ sought that are expected to tell most, per second, of which explanation is right
 and, once that is settled, of how large its numbers are. Nothing is moved
 farther than [limits] of rig.toml allows and, where it states nothing, than the
 recordings moved it; the force on the part is kept by 20 draws of the numbers of
-every open explanation. Exit codes: 0 written, 2 bad input.
+every open explanation. Given the results of a diagnosis in place of a case, it
+goes on from them. Exit codes: 0 written, 2 bad input.
 
 Examples:
   # Inputs, a bench's scenario, instructions and a picture. (takes minutes)
@@ -35,7 +37,7 @@ Examples:
 
 #[derive(Debug, Args)]
 pub(in super::super) struct NextArguments {
-    /// Folder with rig.toml and the recordings that it names.
+    /// Folder with rig.toml and the recordings that it names, or with the results of its diagnosis, which is gone on from.
     case: PathBuf,
     #[command(flatten)]
     allowed: Allowed,
@@ -53,15 +55,33 @@ pub(in super::super) struct NextArguments {
     json: bool,
 }
 
+/// A case by its folder, or by that of its diagnosis: then with what it found.
+fn case_of(folder: &Path) -> Result<Case, AppError> {
+    let file = folder.join(EXPLANATIONS);
+    if !file.is_file() {
+        return Ok(Case::from_folder(folder)?);
+    }
+    let known = Explanations::read(&file)?;
+    let mut case = Case::with_recordings(&known.case, &known.recordings)?;
+    match known.outdated(&case.provenance()?) {
+        None => case.go_on_from(&known),
+        Some(why) => say_aside(&format!(
+            "note: {}: {why}; diagnosed from the beginning",
+            file.display()
+        )),
+    }
+    Ok(case)
+}
+
 /// Chooses an experiment and writes it.
 pub(in super::super) fn run(arguments: &NextArguments) -> Result<ExitCode, AppError> {
     let silent = arguments.quiet || arguments.json;
-    let case = Case::from_folder(&arguments.case)?;
+    let case = case_of(&arguments.case)?;
     bench_rig(&case)?;
     let out = output_folder(arguments.out.as_ref(), &arguments.case);
     let folder = OutputFolder::prepare(&out, &NAMES, OverwritePolicy::of(arguments.force))?;
     let _interruptible = Interruptible::of_one("choice", &out);
-    let found = diagnosed(&case, silent)?;
+    let found = diagnosed(&case, (silent, arguments.allowed.verbose))?;
     let Some(diagnosis) = &found.diagnosis else {
         return Err(NextError::NoBench { case: case.name }.into());
     };

@@ -130,6 +130,7 @@ pub(super) fn json(proposal: &Proposal) -> Value {
         "information_on_how_much_nat": round(chosen.expected.how_much),
         "largest_force_n": (chosen.force * 10.0).round() / 10.0,
         "instructions": chosen.programme.instructions(),
+        "left_open": proposal.left_open(),
     })
 }
 

@@ -14,16 +14,22 @@ use super::super::progress;
 use super::error::NextError;
 use super::files;
 use super::outputs::write;
+use super::page::ROLES;
 use super::proposal::{Allowed, Proposal, bench_rig, diagnosed};
 use super::rig_program::{Reply, RigProgram, check_inputs};
-use crate::case::{Case, Diagnosed, IMPROVED, RIG, read_rig, rig_of, to_fit};
+use crate::case::{Case, Diagnosed, Explanations, IMPROVED, RIG, read_rig, rig_of, to_fit};
+use crate::diagnosis::answer::Answer;
 use crate::diagnosis::experiment::information::Open;
 use crate::diagnosis::experiment::limits::LimitError;
-use crate::document::{Block, Cell, Column, Document, Section, Style, Table, Tone, html, text};
+use crate::document::{
+    Block, Cell, Column, Document, Horizontal, Panel, Role, Section, Series, Stroke, Style, Table,
+    Tone, html, text,
+};
 use crate::plant::DeviceParts;
 use crate::quantity::percent;
 use crate::recording::RecordingError;
 use crate::recording::atomic::{make_folder, write_all, write_text};
+use crate::report;
 use crate::scenario::rig_file::{RigFile, text_with_recordings};
 
 /// For the help.
@@ -105,11 +111,19 @@ struct Asked {
     instructions: Vec<String>,
 }
 
+/// What is to be done next.
+enum Next {
+    /// A recording that was made.
+    Recorded(Asked),
+    /// Nothing that is allowed would tell enough; what stays open, a sentence each.
+    Nothing(Vec<String>),
+}
+
 /// Why it stops.
 enum Stop {
     Settled,
     NothingMissing,
-    NoExperiment,
+    NoExperiment(Vec<String>),
     Runs,
 }
 
@@ -118,7 +132,7 @@ impl Stop {
         match self {
             Self::Settled => "settled",
             Self::NothingMissing => "nothing is missing",
-            Self::NoExperiment => "no allowed experiment would tell more",
+            Self::NoExperiment(_) => "no allowed experiment would tell more",
             Self::Runs => "as many recordings as --runs allows",
         }
     }
@@ -211,12 +225,19 @@ pub(in super::super) fn investigate(
         patience: arguments.patience,
     };
     let start = Instant::now();
+    let case_name = case.name;
     let mut growth = Growth::of(&arguments.case, out.join(CASE))?;
     let mut odds: Vec<Odds> = Vec::new();
     let mut asked: Vec<Asked> = Vec::new();
+    let mut known: Option<Explanations> = None;
     let (stop, found) = loop {
-        let case = Case::from_folder(&growth.folder)?;
-        let found = diagnosed(&case, silent)?;
+        let mut case = Case::from_folder(&growth.folder)?;
+        if let Some(known) = &known
+            && known.outdated(&case.provenance()?).is_none()
+        {
+            case.go_on_from(known);
+        }
+        let found = diagnosed(&case, (silent, arguments.allowed.verbose))?;
         let Some(diagnosis) = &found.diagnosis else {
             return Err(NextError::NoBench { case: case.name }.into());
         };
@@ -232,17 +253,20 @@ pub(in super::super) fn investigate(
             (false, _, false) => (),
         }
         let number = asked.len() + 1;
-        let Some(next) = ask(arguments, (&case, &found), (&program, &out, number), silent)? else {
-            break (Stop::NoExperiment, found);
+        let next = match ask(arguments, (&case, &found), (&program, &out, number), silent)? {
+            Next::Recorded(next) => next,
+            Next::Nothing(left_open) => break (Stop::NoExperiment(left_open), found),
         };
         growth.add(
             next.name.clone(),
             &out.join(format!("run-{number}")).join(RECORDING),
         )?;
         asked.push(next);
+        known = found.explanations;
     };
     let record = record(&stop, &odds, &asked, start.elapsed().as_secs_f64(), &found);
-    let page = page(&stop, &odds, &asked, &case.name);
+    let name = &case_name;
+    let page = page(&stop, (&odds, &asked), (&found.answer, name));
     let document = format!("{record:#}\n");
     let texts = [
         (IMPROVED, found.improved.as_str()),
@@ -257,7 +281,7 @@ pub(in super::super) fn investigate(
     }
     Ok(match stop {
         Stop::Settled | Stop::NothingMissing => ExitCode::Done,
-        Stop::NoExperiment | Stop::Runs => ExitCode::OutsideBounds,
+        Stop::NoExperiment(_) | Stop::Runs => ExitCode::OutsideBounds,
     })
 }
 
@@ -270,10 +294,10 @@ fn ask(
     (case, found): (&Case, &Diagnosed),
     (program, out, number): (&RigProgram, &Path, usize),
     silent: bool,
-) -> Result<Option<Asked>, AppError> {
+) -> Result<Next, AppError> {
     let allowed = &arguments.allowed;
     let Some(diagnosis) = &found.diagnosis else {
-        return Ok(None);
+        return Ok(Next::Nothing(Vec::new()));
     };
     let name = format!("run-{number}");
     let run = out.join(&name);
@@ -300,7 +324,7 @@ fn ask(
             _ => expected.which,
         };
         if gained < WORTH {
-            return Ok(None);
+            return Ok(Next::Nothing(proposal.left_open()));
         }
         let policy = OverwritePolicy::of(arguments.force || refusals > 0);
         let folder = OutputFolder::prepare_within(&run, &files::NAMES, policy)?;
@@ -314,7 +338,7 @@ fn ask(
                     let read = read_rig(DeviceParts::Whole, &recording)?;
                     let inputs = proposal.chosen.programme.inputs(&proposal.limits);
                     check_inputs(&recording, &read, &inputs)?;
-                    return Ok(Some(Asked {
+                    return Ok(Next::Recorded(Asked {
                         name: format!("{name}.csv"),
                         duration: proposal.chosen.programme.duration(),
                         expected: proposal.expected_probability(),
@@ -350,6 +374,10 @@ fn record(stop: &Stop, odds: &[Odds], asked: &[Asked], seconds: f64, found: &Dia
     });
     json!({
         "stop": stop.words(),
+        "left_open": match stop {
+            Stop::NoExperiment(left_open) => left_open.as_slice(),
+            _ => &[],
+        },
         "odds": odds.iter().map(Odds::json).collect::<Vec<_>>(),
         "asked": runs.collect::<Vec<_>>(),
         "answer": found.answer,
@@ -358,7 +386,11 @@ fn record(stop: &Stop, odds: &[Odds], asked: &[Asked], seconds: f64, found: &Dia
 }
 
 /// Probability of each explanation after each recording.
-fn page(stop: &Stop, odds: &[Odds], asked: &[Asked], case: &str) -> Document<'static> {
+fn page(
+    stop: &Stop,
+    (odds, asked): (&[Odds], &[Asked]),
+    (answer, case): (&Answer, &str),
+) -> Document<'static> {
     let last = odds.last();
     let best = last.and_then(|odds| odds.open.first());
     let (name, probability) = best.cloned().unwrap_or_default();
@@ -374,32 +406,18 @@ fn page(stop: &Stop, odds: &[Odds], asked: &[Asked], case: &str) -> Document<'st
             names.push(name);
         }
     }
-    let mut heads = "explanation | #at first".to_owned();
-    for own in asked {
-        heads += &format!(" | #after {}", own.name);
+    let table = table(odds, asked, &names);
+    let mut blocks = vec![Block::Panel(tree(odds, asked, &names)), Block::Table(table)];
+    if let Stop::NoExperiment(left_open) = stop {
+        blocks.extend(left_open.iter().cloned().map(Block::Paragraph));
     }
-    let row = |name: &str| {
-        let own = odds.iter().map(|odds| {
-            let shown = odds
-                .probability(name)
-                .map_or_else(|| "below 0.1 %".to_owned(), percent);
-            Cell::from(shown)
-        });
-        [Cell::from(name.to_owned())]
-            .into_iter()
-            .chain(own)
-            .collect::<Vec<_>>()
-    };
-    let none = [Cell::from("none of these")].into_iter().chain(
-        odds.iter()
-            .map(|odds| Cell::from(percent(odds.none_of_these))),
-    );
-    let rows = names.iter().map(|name| row(name)).chain([none.collect()]);
-    let table = Table::new("", Column::list(&heads), rows.collect());
     let mut sections = vec![Section::new(
         "Probability of each explanation after each recording",
-        vec![Block::Table(table)],
+        blocks,
     )];
+    if let (Stop::NothingMissing, Some(smallest)) = (stop, report::detectable(answer)) {
+        sections.push(smallest);
+    }
     for own in asked {
         let expected = own.expected.map_or_else(
             || "chosen to hold the one that was open to its numbers".to_owned(),
@@ -423,10 +441,67 @@ fn page(stop: &Stop, odds: &[Odds], asked: &[Asked], case: &str) -> Document<'st
         verdict,
         tone: match stop {
             Stop::Settled | Stop::NothingMissing => Tone::Found,
-            Stop::NoExperiment | Stop::Runs => Tone::Open,
+            Stop::NoExperiment(_) | Stop::Runs => Tone::Open,
         },
         sections,
         footer: "Made by idc investigate. The folder case beside this page holds all recordings with their rig file.".to_owned(),
         ..Document::default()
+    }
+}
+
+/// Probability of each explanation at first and after each recording.
+fn table(odds: &[Odds], asked: &[Asked], names: &[&str]) -> Table {
+    let mut heads = "explanation | #at first".to_owned();
+    for own in asked {
+        heads += &format!(" | #after {}", own.name);
+    }
+    let row = |name: &str| {
+        let own = odds.iter().map(|odds| {
+            let shown = odds
+                .probability(name)
+                .map_or_else(|| "below 0.1 %".to_owned(), percent);
+            Cell::from(shown)
+        });
+        [Cell::from(name.to_owned())]
+            .into_iter()
+            .chain(own)
+            .collect::<Vec<_>>()
+    };
+    let none = [Cell::from("none of these")].into_iter().chain(
+        odds.iter()
+            .map(|odds| Cell::from(percent(odds.none_of_these))),
+    );
+    let rows = names.iter().map(|name| row(name)).chain([none.collect()]);
+    Table::new("", Column::list(&heads), rows.collect())
+}
+
+/// Explanations over the time that was recorded of its own choice: each goes on until a recording cuts it.
+fn tree(odds: &[Odds], asked: &[Asked], names: &[&str]) -> Panel<'static> {
+    let times: Vec<f64> = [0.0]
+        .into_iter()
+        .chain(asked.iter().scan(0.0, |sum, own| {
+            *sum += own.duration;
+            Some(*sum)
+        }))
+        .collect();
+    let series = |label: &str, values: Vec<f64>, (role, stroke)| {
+        let times = times[..values.len()].to_vec();
+        Series::new(label, times, values, role, stroke)
+    };
+    let drawn = names.iter().zip(ROLES).map(|(name, role)| {
+        let own = odds
+            .iter()
+            .map(|odds| odds.probability(name).unwrap_or(0.0));
+        series(name, own.collect(), (role, Stroke::Plain))
+    });
+    let none = odds.iter().map(|odds| odds.none_of_these).collect();
+    let none = series("none of these", none, (Role::Command, Stroke::Dashed));
+    Panel {
+        title: String::new(),
+        vertical_label: "probability [1]".to_owned(),
+        horizontal: Horizontal::Quantity("recorded of its own choice [s]".to_owned()),
+        series: drawn.chain([none]).collect(),
+        within: Some([0.0, 1.0]),
+        ..Panel::default()
     }
 }

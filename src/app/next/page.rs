@@ -14,7 +14,7 @@ use crate::quantity::percent;
 /// Explanations that are drawn.
 const DRAWN: usize = 4;
 /// Their colours.
-const ROLES: [Role; DRAWN] = [Role::Filtered, Role::Force, Role::Stroke, Role::Estimate];
+pub(super) const ROLES: [Role; DRAWN] = [Role::Filtered, Role::Force, Role::Stroke, Role::Estimate];
 /// Expected probability from which the experiment settles which explanation is right [1].
 pub(super) const SETTLES: f64 = 0.95;
 
@@ -72,6 +72,8 @@ pub(super) fn of_proposal(proposal: &Proposal, case: &str) -> Document<'static> 
     let columns =
         Column::list("explanation | #probability now | #expected afterwards if it is right");
     let table = Table::new("", columns, rows.chain([none]).collect());
+    let left_open = proposal.left_open().into_iter().map(Block::Paragraph);
+    let of_open = [Block::Table(table)].into_iter().chain(left_open).collect();
     let steps = chosen.programme.instructions().into_iter();
     let panels = panels(proposal).into_iter().map(Block::Panel).collect();
     Document {
@@ -83,7 +85,7 @@ pub(super) fn of_proposal(proposal: &Proposal, case: &str) -> Document<'static> 
             chosen.force, proposal.limits.force
         )],
         sections: vec![
-            Section::new("Open explanations", vec![Block::Table(table)]),
+            Section::new("Open explanations", of_open),
             Section::new("What to do", steps.map(Block::Paragraph).collect()),
             Section::new("What each explanation predicts", panels).appendix(),
         ],

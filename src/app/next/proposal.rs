@@ -6,11 +6,13 @@ use clap::{Args, ValueEnum};
 
 use super::super::error::AppError;
 use super::super::progress::StagedLine;
+use super::super::terminal::say_aside;
 use super::error::NextError;
 use crate::case::{Case, Diagnosed, diagnose};
 use crate::diagnosis::answer::finding::Diagnosis;
 use crate::diagnosis::experiment::choice::{ChoiceSettings, Chosen, choose};
 use crate::diagnosis::experiment::information::{Open, Sensors};
+use crate::diagnosis::experiment::inseparable::{Inseparable, inseparable};
 use crate::diagnosis::experiment::limits::{Limits, Movable};
 use crate::diagnosis::search::progress::Progress;
 use crate::diagnosis::settings::Settings;
@@ -38,7 +40,7 @@ pub(super) struct Allowed {
     #[arg(long, value_delimiter = ',', value_name = "INPUTS")]
     may: Vec<May>,
     /// Cost of preparing a recording, as seconds of recording.
-    #[arg(long, value_name = "SECONDS", default_value_t = 5.0, value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", default_value_t = 15.0, value_parser = seconds)]
     cost: f64,
     /// Programmes that are looked at.
     #[arg(long, value_name = "COUNT", default_value_t = 240, value_parser = clap::value_parser!(u32).range(1..=100_000))]
@@ -46,6 +48,9 @@ pub(super) struct Allowed {
     /// Seed of what is drawn.
     #[arg(long, default_value_t = 1)]
     pub seed: u64,
+    /// Print on stderr what the diagnosis tries, and what each explanation would cost.
+    #[arg(long, conflicts_with = "quiet")]
+    pub verbose: bool,
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -83,6 +88,8 @@ pub(super) struct Proposal {
     pub sensors: Sensors,
     pub limits: Limits,
     pub chosen: Chosen,
+    /// Pairs of explanations that it leaves open.
+    pub inseparable: Vec<Inseparable>,
 }
 
 impl Proposal {
@@ -108,13 +115,29 @@ impl Proposal {
         let settings = allowed.settings(seed);
         let chosen =
             choose(&open, &sensors, &limits, &settings, observer).map_err(NextError::Limits)?;
+        let inputs = chosen.programme.inputs(&limits);
+        let odds = &chosen.expected.odds;
         Ok(Self {
             none_of_these: diagnosis.none_of_these(),
+            inseparable: inseparable(&open, (&sensors, odds), &inputs),
             open,
             sensors,
             limits,
             chosen,
         })
+    }
+
+    /// A sentence on each pair that it leaves open.
+    pub(super) fn left_open(&self) -> Vec<String> {
+        let words = |own: &Inseparable| {
+            let [one, other] = own.places.map(|place| &self.open[place].name);
+            let by = match own.sensor {
+                Some(sensor) => format!("a sensor of {} would tell them apart", sensor.words()),
+                None => "nor would a sensor of a channel that is missing, or of the pressure in a chamber".to_owned(),
+            };
+            format!("{one} and {other} would still be open after it; {by}.")
+        };
+        self.inseparable.iter().map(words).collect()
     }
 
     /// Probability that is expected of the true explanation afterwards, if it is one of these [1]; none where only one is open, which a recording may deny.
@@ -137,10 +160,20 @@ pub(super) fn bench_rig(case: &Case) -> Result<&RigFile, NextError> {
 }
 
 /// Diagnoses a case of a rig, with its progress.
-pub(super) fn diagnosed(case: &Case, silent: bool) -> Result<Diagnosed, AppError> {
-    let line = StagedLine::new(&super::super::diagnose::stages::first(), silent);
+pub(super) fn diagnosed(
+    case: &Case,
+    (silent, verbose): (bool, bool),
+) -> Result<Diagnosed, AppError> {
+    let line = StagedLine::new(&super::super::diagnose::stages::first(), silent || verbose);
     let mut stages = super::super::diagnose::stages::Stages::default();
-    let found = diagnose(case, &Settings::default(), &mut |now: &Progress<'_>| {
+    let settings = Settings {
+        rivals: true,
+        ..Settings::default()
+    };
+    let found = diagnose(case, &settings, &mut |now: &Progress<'_>| {
+        if verbose {
+            say_aside(&now.to_string());
+        }
         let (words, share) = stages.shown(now);
         line.tell(words, share);
     });

@@ -19,6 +19,14 @@ const AS_WELL: f64 = 1.01;
 /// Probability from which a law of a family is named [1].
 const NAMED: f64 = 0.01;
 
+/// Whether an explanation has an effect, by its name.
+fn has(hypothesis: &Hypothesis, name: &str) -> bool {
+    match name {
+        UNLISTED => hypothesis.unlisted().is_some(),
+        _ => hypothesis.effects.iter().any(|e| e.name == name),
+    }
+}
+
 impl Diagnosis {
     /// Probability that is stated of an effect, by its name.
     #[must_use]
@@ -62,18 +70,15 @@ impl Diagnosis {
             .collect()
     }
 
-    /// Probability that an effect is at work by the evidence: that of the explanations with it, times G / (G + L), G what it gains over the best one without
-    /// it and L what all effects together leave beyond noise, of which what it gains may be a part.
+    /// Probability that an effect is at work by the evidence: that of the explanations with it, times G / (G + L), G what it gains over the best one of the
+    /// others alone and L what all effects together leave beyond noise, of which what it gains may be a part; or times (R + M) / (R + 2 M), R what it gains
+    /// over another effect in its place, where that is less: M, what is left and what laws leave by being idealised, may tip the balance between the two.
     fn probability(&self, name: &str) -> f64 {
-        let has = |h: &Hypothesis| match name {
-            UNLISTED => h.unlisted().is_some(),
-            _ => h.effects.iter().any(|e| e.name == name),
-        };
         let own = self.best().effects.iter().find(|e| e.name == name);
         // A law that excludes it or is of its family is no explanation without what it stands for: the probability weighs that.
         let in_place =
             |h: &Hypothesis| own.is_some_and(|own| h.effects.iter().any(|e| is_alike(e, own)));
-        self.probability_of(&has, &in_place)
+        self.probability_of(&|h| has(h, name), &in_place)
     }
 
     /// The same of explanations of a kind; those `in_place` of them are not held against them.
@@ -84,24 +89,73 @@ impl Diagnosis {
     ) -> f64 {
         let with = self.ranked.iter().filter(|r| has(&r.hypothesis));
         let probability = with.map(|r| r.probability).sum::<f64>().min(1.0);
-        let gain = self.gain(has, in_place);
-        let left = self.left_beyond_noise() + self.idealised_beside(gain);
+        let left = self.left_of_laws();
+        let another = |h: &Hypothesis| !has(h) && !in_place(h) && !self.is_within_best(h);
+        let gain = self.gain_over(&another);
+        let beside = match left > 0.0 && gain.is_finite() {
+            true => (gain + left) / (gain + 2.0 * left),
+            false => 1.0,
+        };
+        probability * self.not_left(has).min(beside)
+    }
+
+    /// Probability that what an effect of the best explanation gains is no part of what all of them leave [1], with its doubts: what is said of it where no other
+    /// explanation stands beside.
+    pub(in crate::diagnosis) fn certain_alone(&self, name: &str) -> f64 {
+        stated(self.not_left(&|h| has(h, name)), &self.doubts(name))
+    }
+
+    /// G / (G + L).
+    fn not_left(&self, has: &dyn Fn(&Hypothesis) -> bool) -> f64 {
+        let gain = self.gain_over(&|h| !has(h) && self.is_within_best(h));
+        let left = self.left_beside(has);
         match left > 0.0 && gain.is_finite() {
-            true => probability * gain / (gain + left),
-            false => probability,
+            true => gain / (gain + left),
+            false => 1.0,
         }
     }
 
-    /// Gain of the best explanation over the best one without what is asked for; infinite where none was fitted.
-    fn gain(
-        &self,
-        has: &dyn Fn(&Hypothesis) -> bool,
-        in_place: &dyn Fn(&Hypothesis) -> bool,
-    ) -> f64 {
+    /// L, with what the idealisation of the other effects may leave.
+    fn left_beside(&self, has: &dyn Fn(&Hypothesis) -> bool) -> f64 {
+        let gain = self.gain_over(&|h| !has(h) && self.is_within_best(h));
+        self.left_beyond_noise() + self.idealised_beside(gain)
+    }
+
+    /// Odds of another explanation against the best that what is left may come to [1], L / (R + L): none of one that has effects of the best alone, or laws in their
+    /// places that are of their kind.
+    pub(in crate::diagnosis) fn odds_by_what_is_left(&self, other: &Hypothesis) -> f64 {
+        let lacks = |own: &&&Effect| !other.effects.iter().any(|e| e.excludes(own));
+        let replaced: Vec<&str> = (self.best().effects.iter().filter(lacks))
+            .map(|own| own.name)
+            .collect();
+        if replaced.is_empty() || self.is_within_best(other) {
+            return 0.0;
+        }
+        let left = self.left_of_laws();
+        let gain = (other.fit.cost() - self.best().fit.cost()).max(0.0);
+        match left > 0.0 {
+            true => left / (gain + left),
+            false => 0.0,
+        }
+    }
+
+    /// What is left beyond noise, with what the idealisation of the laws may leave of all that they explain: between two laws either may be a little wrong by that.
+    fn left_of_laws(&self) -> f64 {
+        self.left_beyond_noise() + self.idealised_beside(0.0)
+    }
+
+    /// Whether an explanation has effects of the best one alone.
+    fn is_within_best(&self, other: &Hypothesis) -> bool {
+        let best = self.best();
+        let known = |e: &&Effect| best.effects.iter().any(|own| own.name == e.name);
+        other.effects.iter().all(known) && (other.unlisted().is_none() || best.unlisted().is_some())
+    }
+
+    /// Gain of the best explanation over the best one of a kind; infinite where none was fitted.
+    fn gain_over(&self, of: &dyn Fn(&Hypothesis) -> bool) -> f64 {
         let own = &self.best().fit;
-        let without =
-            (self.ranked.iter()).filter(|r| !has(&r.hypothesis) && !in_place(&r.hypothesis));
-        let least = without.map(|r| match self.remaining {
+        let those = self.ranked.iter().filter(|r| of(&r.hypothesis));
+        let least = those.map(|r| match self.remaining {
             // Those far behind were not fitted to all samples; scores are of the same ones.
             Some(_) => r.score - self.ranked[0].score,
             None => r.hypothesis.fit.cost() - own.cost(),

@@ -28,6 +28,10 @@ const OF_MODEL: f64 = 8.0;
 const TAKEN: f64 = 0.3;
 /// The same in each recording.
 const TAKEN_OF_EACH: f64 = 0.1;
+/// The same in each half of them.
+const TAKEN_OF_HALF: f64 = 0.05;
+/// Lag that must have grown by the end of the longest recording [s]: less is what a device within its tolerances comes to.
+const LEAST_GROWN: f64 = 0.03;
 /// Offset that a channel must have beyond the others [s].
 const LEAST_OFFSET: f64 = 0.012;
 /// Shares of the nominal time constant of the regulator that are tried, for it delays too [1].
@@ -49,6 +53,15 @@ impl Pair<'_> {
     fn cost(&self, scale: f64, offset: f64) -> f64 {
         let stride = (self.time.len() / SAMPLES).max(1);
         self.loss(&self.read(scale, offset, stride), 1.0)
+    }
+
+    /// The same of either half of the recording.
+    fn cost_of_halves(&self, scale: f64, offset: f64) -> [f64; 2] {
+        let read = self.read(scale, offset, 1);
+        let middle = self.time.len() / 2;
+        let measured = self.measured[..middle].iter().filter(|v| v.is_finite());
+        let (first, second) = read.split_at(measured.count());
+        [self.loss(first, 1.0), self.loss(second, 1.0)]
     }
 
     /// Readings beside simulated ones at the times of a clock, one of so many.
@@ -110,6 +123,10 @@ struct Fitted {
     scale: f64,
     /// Share of the cost that the scale takes from the best offset, in all and in the recording where it takes least [1].
     taken: [f64; 2],
+    /// The same in the halves of the recordings, where it takes less: what came late once is late in one of them.
+    taken_of_half: f64,
+    /// By how much it is late or early at the end of the longest recording [s].
+    grown: f64,
     /// Best offset alone [s], and the share of the cost that it takes [1].
     alone: f64,
     taken_alone: f64,
@@ -187,9 +204,17 @@ fn fitted(
         let each = pairs
             .iter()
             .map(|p| share(p.cost(1.0, alone), p.cost(scale, offset)));
+        let halves = |scale: f64, offset: f64| {
+            let all = pairs.iter().map(|p| p.cost_of_halves(scale, offset));
+            all.fold([0.0; 2], |[a, b], [first, second]| [a + first, b + second])
+        };
+        let (before, after) = (halves(1.0, alone), halves(scale, offset));
+        let longest = pairs.iter().map(|p| p.time[p.time.len() - 1] - p.time[0]);
         let found = Fitted {
             channel,
             scale,
+            taken_of_half: share(before[0], after[0]).min(share(before[1], after[1])),
+            grown: (scale - 1.0).abs() * longest.fold(0.0, f64::max),
             taken: [
                 share(cost_alone, cost_both),
                 each.fold(f64::INFINITY, f64::min),
@@ -230,7 +255,11 @@ fn least(of: impl Fn(f64) -> f64, [low, high]: [f64; 2], count: usize) -> (f64, 
 /// Channels whose lag grows with time, all by the same scale: those of one logger.
 fn of_logger(case: &DiagnosisInput, fitted: &[Fitted]) -> Vec<DataFault> {
     let grows = |f: &&Fitted| {
-        (f.scale - 1.0).abs() > 0.5 * WORTH && f.taken[0] > TAKEN && f.taken[1] > TAKEN_OF_EACH
+        (f.scale - 1.0).abs() > 0.5 * WORTH
+            && f.grown > LEAST_GROWN
+            && f.taken[0] > TAKEN
+            && f.taken[1] > TAKEN_OF_EACH
+            && f.taken_of_half > TAKEN_OF_HALF
     };
     let those: Vec<&Fitted> = fitted.iter().filter(grows).collect();
     let Some(first) = those.first() else {

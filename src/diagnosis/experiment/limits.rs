@@ -1,6 +1,7 @@
 //! How far an experiment may move a rig, and by what.
 
 use crate::diagnosis::recordings::evidence::Evidence;
+use crate::diagnosis::recordings::recorded::LEAST_SAMPLES;
 use crate::plant::{Channel, OperatingLimits};
 use crate::stats::median_step;
 
@@ -60,6 +61,16 @@ pub enum LimitError {
         /// Why.
         what: String,
     },
+    /// Recordings that would be too short to tell anything.
+    #[error(
+        "recordings of at most {most} s are allowed, expected {least} s at least: a longer `limits.duration_s` or --time"
+    )]
+    TooShort {
+        /// The limit [s].
+        most: f64,
+        /// What is needed [s].
+        least: f64,
+    },
     /// Two that exclude each other.
     #[error("`{lower}` is {least} and `{upper}` {most}, expected the first below the second")]
     Contradiction {
@@ -84,7 +95,16 @@ pub enum LimitError {
     },
 }
 
+/// Shortest recording [s]: less is nothing that a person would set a rig up for.
+const SHORTEST: f64 = 1.0;
+
 impl Limits {
+    /// Length that a recording has at least [s].
+    #[must_use]
+    pub fn shortest(&self) -> f64 {
+        SHORTEST.max(2.0 * LEAST_SAMPLES as f64 * self.step)
+    }
+
     /// What a file states, and for the rest what the recordings did.
     ///
     /// # Errors
@@ -140,6 +160,13 @@ impl Limits {
     }
 
     fn check(&self) -> Result<(), LimitError> {
+        let shortest = self.shortest();
+        if self.duration < shortest {
+            return Err(LimitError::TooShort {
+                most: self.duration,
+                least: shortest,
+            });
+        }
         let [least, most] = self.set_pressure;
         let pressure_moves = self.movable.set_pressure && most > least;
         let surface_moves = self.movable.surface && self.surface.is_some_and(|[a, b]| b > a);

@@ -9,10 +9,12 @@ use crate::diagnosis::search::ranking::Ranked;
 use crate::effects::UNLISTED;
 use crate::plant::CHANNELS;
 
-/// Probability below which an explanation is settled not to be the one [1].
+/// Odds against the best below which an explanation is settled not to be the one [1].
 const LEAST: f64 = 1e-3;
 /// Explanations at most: others behind them are less likely than all of these.
 const MOST: usize = 6;
+/// Standard deviations of its sum of squares that noise alone may leave [1].
+const CHANCE: f64 = 3.0;
 /// Least probability that none of the explanations holds [1]: no list holds all laws.
 const NONE_OF_THESE: f64 = 0.005;
 
@@ -20,25 +22,28 @@ impl Diagnosis {
     /// Explanations that are open, the likeliest first; their probabilities and that of none of these come to one.
     #[must_use]
     pub fn open(&self) -> Vec<Open> {
-        let open = || {
-            self.ranked
-                .iter()
-                .filter(|r| r.probability >= LEAST)
-                .take(MOST)
-        };
-        let sum: f64 = open().map(|r| r.probability).sum();
+        let odds = |r: &Ranked| r.odds.max(self.odds_by_what_is_left(&r.hypothesis));
+        let mut open: Vec<(f64, &Ranked)> = (self.ranked.iter().map(|r| (odds(r), r)))
+            .filter(|(odds, _)| *odds >= LEAST)
+            .collect();
+        open[1..].sort_by(|a, b| b.0.total_cmp(&a.0));
+        open.truncate(MOST);
+        let sum: f64 = open.iter().map(|(odds, _)| odds).sum();
         let any = 1.0 - self.none_of_these();
-        open()
-            .map(|ranked| self.open_of(ranked, any * ranked.probability / sum))
+        let sensors = self.sensors();
+        let own = open.into_iter();
+        own.map(|(odds, ranked)| self.open_of(ranked, any * odds / sum))
+            .map(|own| own.informed_by(&self.evidence, &sensors))
             .collect()
     }
 
     /// Probability that none of the explanations holds [1]: what the best leaves beyond noise over that and what it gains over the nominal model, and no less than
-    /// what is stated against the least certain of its effects.
+    /// what is stated against the least certain of its effects, were there no other explanation beside it.
     #[must_use]
     pub fn none_of_these(&self) -> f64 {
         let best = &self.best().fit;
-        let left = self.model_error.left(&self.evidence, best);
+        let chance = CHANCE * (2.0 * self.evidence.count() as f64).sqrt();
+        let left = (self.model_error.left(&self.evidence, best) - chance).max(0.0);
         let gained = (self.baseline.prediction.residuals.iter())
             .filter(|r| r.is_finite())
             .map(|r| r * r)
@@ -47,22 +52,9 @@ impl Diagnosis {
         let left = left / (left + gained.max(0.0) + 1.0);
         let unlisted = self.best().unlisted().map(|_| UNLISTED);
         let names = self.best().effects.iter().map(|effect| effect.name);
-        let certain = names.chain(unlisted).map(|name| self.certain(name));
+        let certain = names.chain(unlisted).map(|name| self.certain_alone(name));
         let doubted = 1.0 - certain.fold(1.0, f64::min);
         left.max(doubted).clamp(NONE_OF_THESE, 1.0 - NONE_OF_THESE)
-    }
-
-    /// What is stated of an effect of the best explanation, given that one with it is right [1].
-    fn certain(&self, name: &str) -> f64 {
-        let has = |r: &&Ranked| match name {
-            UNLISTED => r.hypothesis.unlisted().is_some(),
-            _ => r.hypothesis.effects.iter().any(|e| e.name == name),
-        };
-        let with: f64 = self.ranked.iter().filter(has).map(|r| r.probability).sum();
-        match with > 0.0 {
-            true => (self.confidence(name) / with.min(1.0)).min(1.0),
-            false => 0.0,
-        }
     }
 
     fn open_of(&self, ranked: &Ranked, probability: f64) -> Open {
@@ -103,8 +95,10 @@ impl Diagnosis {
             }
         }
         Sensors {
+            without: self.baseline.plant.clone(),
             noise: self.evidence.noise,
             variance,
+            probe: None,
         }
     }
 }

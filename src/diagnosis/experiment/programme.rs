@@ -191,6 +191,12 @@ impl Programme {
             left -= segment.duration;
             segment.duration >= 0.5 * HOLD
         });
+        let missing = limits.shortest() - self.duration();
+        if let Some(last) = self.segments.last_mut()
+            && missing > 0.5 * HOLD
+        {
+            last.duration += (missing / HOLD).round() * HOLD;
+        }
         if let (Some(surface), Some(range)) = (&mut self.surface, limits.surface) {
             surface.within(limits, range);
         }

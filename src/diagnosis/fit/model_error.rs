@@ -18,6 +18,18 @@ use crate::diagnosis::settings::HUBER;
 /// Multiple of the noise's variance up to which a channel's residuals count as noise [1].
 const NOISE_ALONE: f64 = 1.3;
 
+/// Standard deviations of an autocorrelation time of noise that are chance [1].
+const CHANCE: f64 = 3.0;
+/// Samples that the sum of autocorrelations reaches over, of noise [1].
+const WINDOW: f64 = 5.0;
+
+/// The same of a channel of so many samples, of which few say little of their autocorrelation time: its relative variance is 2 (2 M + 1) / N over a window of M
+/// samples (Sokal 1997).
+fn noise_alone(samples: f64) -> f64 {
+    let deviation = (2.0 * (2.0 * WINDOW + 1.0) / samples.max(1.0)).sqrt();
+    NOISE_ALONE.max(1.0 + CHANCE * deviation)
+}
+
 /// Variance of a channel's residuals in units of the noise's, times the samples that tell as much as one [1].
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModelError {
@@ -49,7 +61,7 @@ impl ModelError {
         }
         let variance = sums.into_iter().map(|[squares, times, samples]| {
             let [size, time] = [squares, times].map(|sum| (sum / samples.max(1.0)).max(1.0));
-            if size * time < NOISE_ALONE {
+            if size * time < noise_alone(samples) {
                 1.0
             } else {
                 size * time
@@ -130,6 +142,14 @@ mod tests {
         assert!(error.is_none(), "{error:?}");
         assert_eq!(error.cost(&evidence, &residuals), robust_sum(&residuals));
         assert_eq!(error.left(&evidence, &fit(residuals, Vec::new(), 0.0)), 0.0);
+    }
+
+    /// Of half a second of noise, that its autocorrelation time is two samples rather than one was taken for a law that is wrong, and weighed all that was said of it.
+    #[test]
+    fn little_noise_is_no_model_error_either_and_what_is_wrong_is_one_still() {
+        assert!(planted(1, 0.0, 1.0).2.is_none());
+        assert!(planted(2, 0.0, 1.0).2.is_none());
+        assert!(!planted(2, 0.9, 1.5).2.is_none());
     }
 
     /// Closed form of a process of first order: tau = (1 + memory) / (1 - memory), of which the sum down to 0.05 has 0.95 of what exceeds 1.

@@ -7,6 +7,7 @@ use super::recorded::{COLUMNS, QUANTITIES, Recorded, RecordedError};
 use crate::diagnosis::data_fault::fault::DataFault;
 use crate::diagnosis::fit::free::{Free, Prior};
 use crate::diagnosis::search::EstablishedEffect;
+use crate::diagnosis::search::kept::KeptExplanation;
 use crate::effects::{Coordinate, Effect};
 use crate::plant::registry::{PRESSURE_DRIFT, START_ERROR};
 use crate::plant::{CHANNELS, Channel, DeviceParts, PlantParameters, Quantity};
@@ -50,6 +51,8 @@ pub struct DiagnosisInput {
     pub tried: Option<&'static Effect>,
     /// Faults of sensors and clocks that were found, and taken off the recordings.
     pub data_faults: Vec<DataFault>,
+    /// Explanations that were found in a part of the recordings, to go on from; nothing to begin with nothing.
+    pub kept: Vec<KeptExplanation>,
 }
 
 impl DiagnosisInput {

@@ -26,7 +26,7 @@ pub const COLUMNS: [&str; CHANNELS.len()] = [
 ];
 
 /// Samples below which a recording carries no information on a rig.
-const LEAST_SAMPLES: usize = 50;
+pub const LEAST_SAMPLES: usize = 50;
 /// Times that a sensor's noise may be smaller or larger than its sheet says; units differ by more.
 const UNIT_FACTOR: f64 = 200.0;
 /// Samples that a workpiece cannot be gone for: a surface lost for less is filled in.

@@ -154,7 +154,7 @@ impl Search<'_> {
         close.sort_by(|a, b| self.rough_score(a).total_cmp(&self.rough_score(b)));
         let more: Vec<Hypothesis> = (close.into_iter().take(MOST_CLOSE))
             .take_while(|_| !self.is_spent())
-            .map(|h| self.rival(h, self.score(best)))
+            .map(|h| self.rival(h, self.score(best), self.settings.given_up))
             .collect();
         for h in &more {
             observer(&Step::Variation.of(h, format!("close {:.1}", self.score(h))));
@@ -165,13 +165,13 @@ impl Search<'_> {
     }
 
     /// A rival fitted in full; one that is hopelessly behind the best score before the finest measure is left there.
-    fn rival(&self, rough: &Hypothesis, best: f64) -> Hypothesis {
+    pub(super) fn rival(&self, rough: &Hypothesis, best: f64, hopeless: f64) -> Hypothesis {
         let coarse = Refit {
             stages: FULL.split_at(FULL.len() - 1).0,
             ..Refit::FULL
         };
         let fitted = self.refit(rough, coarse);
-        match self.score(&fitted) < best + self.settings.given_up {
+        match self.score(&fitted) < best + hopeless {
             true => self.refit(&fitted, Refit::FINEST.from(Start::Here)),
             false => fitted,
         }
@@ -266,25 +266,7 @@ impl Search<'_> {
     /// A hypothesis without one of its effects, fitted in full from where it was; what the effect freed is held to its tolerance again. Nothing where a
     /// rough fit is hopeless already.
     pub(super) fn without(&self, hypothesis: &Hypothesis, index: usize) -> Option<Hypothesis> {
-        let fit = &hypothesis.fit;
-        let plant = &fit.prediction.plant;
-        let own = hypothesis.tolerated(&self.nominal);
-        let numbers = hypothesis.numbers_of(&self.nominal, index);
-        let phase = |f: &Free| hypothesis.effects[index].has_phase(&f.quantity);
-        let kept = fit.free_from_here().into_iter().enumerate();
-        let others: Vec<Free> = kept
-            .filter(|(i, f)| *i >= own && !numbers.contains(i) && !phase(f))
-            .map(|(_, f)| f)
-            .collect();
-        let mut free: Vec<Free> = self
-            .tolerated
-            .iter()
-            .filter(|f| !others.iter().any(|o| same(o, f, &self.nominal)))
-            .map(|f| f.from_where(plant))
-            .collect();
-        free.extend(others);
-        let mut effects = hypothesis.effects.clone();
-        effects.remove(index);
+        let (effects, mut free) = self.without_effect(hypothesis, index);
         // What was not needed is missed at no sample.
         let from = (&self.nominal, None);
         let limit = Limit::of(LIGHTER);
@@ -307,6 +289,34 @@ impl Search<'_> {
         }
         let effects = rough.effects;
         Some(self.fitted(effects, from, &free, FULL, Limit::FULL))
+    }
+
+    /// Effects without one of them, and what they leave free, from where it was; what the effect freed is held to its tolerance again.
+    pub(super) fn without_effect(
+        &self,
+        hypothesis: &Hypothesis,
+        index: usize,
+    ) -> (Vec<&'static Effect>, Vec<Free>) {
+        let fit = &hypothesis.fit;
+        let plant = &fit.prediction.plant;
+        let own = hypothesis.tolerated(&self.nominal);
+        let numbers = hypothesis.numbers_of(&self.nominal, index);
+        let phase = |f: &Free| hypothesis.effects[index].has_phase(&f.quantity);
+        let kept = fit.free_from_here().into_iter().enumerate();
+        let others: Vec<Free> = kept
+            .filter(|(i, f)| *i >= own && !numbers.contains(i) && !phase(f))
+            .map(|(_, f)| f)
+            .collect();
+        let mut free: Vec<Free> = self
+            .tolerated
+            .iter()
+            .filter(|f| !others.iter().any(|o| same(o, f, &self.nominal)))
+            .map(|f| f.from_where(plant))
+            .collect();
+        free.extend(others);
+        let mut effects = hypothesis.effects.clone();
+        effects.remove(index);
+        (effects, free)
     }
 
     /// Adds effects that only the finest measure shows, where the best hypothesis is otherwise good. What a law is a little wrong by at an impact, an effect

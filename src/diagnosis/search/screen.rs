@@ -28,7 +28,7 @@ const WAY: Free = Free {
     prior: Prior::Flat,
 };
 /// Phase of what is periodic in a recording: any.
-const PHASE: Free = Free {
+pub(super) const PHASE: Free = Free {
     quantity: registry::RUNOUT_PHASE.quantity(),
     start: 0.0,
     coordinate: Coordinate::Linear(0.1),
