@@ -124,6 +124,10 @@ class Study:
             pressures += [float(row[rows[0].index("set_pressure_pa")]) for row in rows[1:]]
             if "force_n" in rows[0]:
                 forces += [float(row[rows[0].index("force_n")] or 0) for row in rows[1:]]
+        programmes = self.work / "programmes" / case.name
+        programmes.mkdir(parents=True, exist_ok=True)
+        for name in ("stairs.csv", "ride.csv", "cycle.csv"):
+            shutil.copy(case / name, programmes / name)
         stairs = case / "stairs.csv"
         rows = stairs.read_text().splitlines()
         stairs.write_text("\n".join([rows[0], *(row for row in rows[1:] if float(row.split(",")[0]) <= self.asked.first)]) + "\n")
@@ -179,7 +183,7 @@ class Study:
         shutil.rmtree(folder, ignore_errors=True)
         shutil.copytree(case, folder)
         rig = (folder / "rig.toml").read_text()
-        names = [path for path in sorted(folder.glob("*.csv")) if f'predict = "{path.name}"' not in rig]
+        names = [self.work / "programmes" / case.name / name for name in ("stairs.csv", "ride.csv", "cycle.csv")]
         recorded, turn = 0.0, 0
         new = []
         while recorded < seconds:
@@ -199,10 +203,12 @@ class Study:
             times = [float(row.split(",")[0]) for row in (rows[1], rows[-1])]
             recorded += times[1] - times[0]
             turn += 1
-        listed = ", ".join(f'"{name}"' for name in [path.name for path in names] + new)
+        listed = ", ".join(f'"{name}"' for name in ["stairs.csv", *new])
         lines = ["fit = [" + listed + "]" if line.startswith("fit") else line for line in rig.splitlines()]
         (folder / "rig.toml").write_text("\n".join(line for line in lines if not line.startswith("predict")) + "\n")
-        odds, _, _ = self.odds_of(folder)
+        odds, _, refused = self.odds_of(folder)
+        if odds is None:
+            print(f"{case.name}: {refused.strip()}", file=sys.stderr)
         return odds
 
     def odds_of(self, case):
