@@ -257,7 +257,11 @@ fn a_diagnosis_goes_on_with_a_recording_more() {
     // Another sheet is another case.
     let rig = std::fs::read_to_string(bench.path("case/rig.toml")).unwrap();
     bench.write("case/rig.toml", format!("{rig}\n# Measured anew.\n"));
-    let said = ok(&[&with[..], &["--out", "found", "--quiet"]].concat());
+    let again = [&with[..], &["--out", "found", "--quiet"]].concat();
+    let refused = bench.idc(&again, &[]);
+    assert_eq!(refused.code, 2, "{}", refused.err);
+    assert!(refused.only_line("error").contains("--force"));
+    let said = ok(&[&again[..], &["--force"]].concat());
     assert!(said.contains("rig.toml has changed"), "{said}");
 }
 

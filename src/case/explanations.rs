@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::error::CaseError;
 use crate::diagnosis::answer::finding::Diagnosis;
 use crate::diagnosis::search::kept::KeptExplanation;
-use crate::recording::provenance::Provenance;
+use crate::recording::provenance::{Provenance, SourceFile};
 
 /// Name of the file.
 pub const EXPLANATIONS: &str = "explanations.json";
@@ -96,15 +96,20 @@ impl Explanations {
         Ok(serde_json::to_string_pretty(self)? + "\n")
     }
 
+    /// A file that they were found in, and that is not there as it was; none where all are: then it is the same case, with recordings more or without.
+    #[must_use]
+    pub fn lost(&self, now: &Provenance) -> Option<&str> {
+        let is_there = |old: &&SourceFile| now.files.iter().any(|file| file.sha256 == old.sha256);
+        let lost = self.made_of.files.iter().find(|old| !is_there(old));
+        lost.map(|lost| lost.file.as_str())
+    }
+
     /// Why a diagnosis of a case as it stands now cannot go on from them, in words; none where it can: the same program, every file that they were found in is
     /// there as it was, and it is likely that one of them holds.
     #[must_use]
     pub fn outdated(&self, now: &Provenance) -> Option<String> {
-        let is_there = |old: &&crate::recording::provenance::SourceFile| {
-            now.files.iter().any(|file| file.sha256 == old.sha256)
-        };
-        if let Some(gone) = self.made_of.files.iter().find(|old| !is_there(old)) {
-            return Some(format!("{} has changed", gone.file));
+        if let Some(lost) = self.lost(now) {
+            return Some(format!("{lost} has changed"));
         }
         if self.none_of_these > LIKELY_NONE {
             return Some("none of its explanations was likely to hold".to_owned());

@@ -121,13 +121,19 @@ impl Prepared {
             }
             Subject::Recordings(Box::new(case))
         };
-        // What is gone on from is taken in by what comes of it.
         let state = out.map(|(out, _)| out.join(EXPLANATIONS));
         let state = state.filter(|state| !recordings.is_empty() && state.is_file());
         let earlier = state.map(|state| Explanations::read(&state)).transpose()?;
-        let policy = |policy| match &earlier {
-            Some(_) => OverwritePolicy::Replace,
-            None => policy,
+        // What is gone on from is taken in by what comes of it; results of another case are not.
+        let goes_on = match (&earlier, &subject) {
+            (Some(earlier), Subject::Recordings(case)) => {
+                earlier.lost(&case.provenance()?).is_none()
+            }
+            _ => false,
+        };
+        let policy = |policy| match goes_on {
+            true => OverwritePolicy::Replace,
+            false => policy,
         };
         let prepared = out.map(|(out, asked)| prepare(folder, out, policy(asked)));
         Ok(Self {

@@ -1,6 +1,7 @@
 //! Explanations that an experiment leaves open, and the sensor that would tell them apart.
 
 use super::information::{Open, Outlook, Probe, Sensors};
+use crate::diagnosis::answer::words::CHANNEL_WORDS;
 use crate::plant::{CHANNELS, Channel, PlantInputs};
 
 /// Probability of another explanation, were one the truth, from which the two stay open [1].
@@ -22,14 +23,10 @@ pub enum FurtherSensor {
 impl FurtherSensor {
     /// In words.
     #[must_use]
-    pub fn words(self) -> &'static str {
+    pub fn words(self) -> String {
         match self {
-            Self::Channel(Channel::RegulatorPressure) => "the pressure at the regulator's outlet",
-            Self::Channel(Channel::Stroke) => "the stroke",
-            Self::Channel(Channel::Force) => "the force",
-            Self::Channel(Channel::Acceleration) => "the acceleration",
-            Self::ChamberPressure(0) => "the pressure in chamber 1",
-            Self::ChamberPressure(_) => "the pressure in chamber 2",
+            Self::Channel(channel) => format!("the {}", CHANNEL_WORDS[channel as usize]),
+            Self::ChamberPressure(place) => format!("the pressure in chamber {}", place + 1),
         }
     }
 
