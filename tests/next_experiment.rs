@@ -162,7 +162,7 @@ fn assert_bench_carries_out(bench: &Bench, time: &[f64], pressures: &[f64]) {
         .map(|(time, stroke)| (own(schema::STROKE, *time) - stroke).abs());
     let off = off.fold(0.0, f64::max);
     assert!(
-        off < 0.04 * most,
+        off < 0.01 * most,
         "bench and prediction differ by {off} m of {most} m"
     );
 }

@@ -72,7 +72,12 @@ pub(super) fn bench(proposal: &Proposal, case: &str) -> String {
             own.start
         ),
     };
-    let at = |index: usize| (index as f64 * HOLD * 1e3).round() / 1e3;
+    // With the first sample of the inputs that holds it: between two of them a reversal would come 2 ms early, which a fast slide shows.
+    let step = proposal.limits.step;
+    let at = |index: usize| {
+        let sample = (index as f64 * HOLD / step - 1e-6).ceil();
+        (sample * step * 1e6).round() / 1e6
+    };
     let mut last = None;
     for (index, (pressure, _)) in commands.iter().enumerate() {
         if last != Some(*pressure) {

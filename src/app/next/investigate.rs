@@ -407,7 +407,8 @@ fn page(
         }
     }
     let table = table(odds, asked, &names);
-    let mut blocks = vec![Block::Panel(tree(odds, asked, &names)), Block::Table(table)];
+    let drawn = (!asked.is_empty()).then(|| Block::Panel(tree(odds, asked, &names)));
+    let mut blocks: Vec<Block<'_>> = drawn.into_iter().chain([Block::Table(table)]).collect();
     if let Stop::NoExperiment(left_open) = stop {
         blocks.extend(left_open.iter().cloned().map(Block::Paragraph));
     }
@@ -475,18 +476,21 @@ fn table(odds: &[Odds], asked: &[Asked], names: &[&str]) -> Table {
     Table::new("", Column::list(&heads), rows.collect())
 }
 
-/// Explanations over the time that was recorded of its own choice: each goes on until a recording cuts it.
+/// Explanations over the time that was recorded of the program's own choice: each goes on until a recording cuts it.
 fn tree(odds: &[Odds], asked: &[Asked], names: &[&str]) -> Panel<'static> {
-    let times: Vec<f64> = [0.0]
-        .into_iter()
-        .chain(asked.iter().scan(0.0, |sum, own| {
-            *sum += own.duration;
-            Some(*sum)
-        }))
-        .collect();
+    let mut ends: Vec<f64> = asked.iter().map(|own| own.duration).collect();
+    for place in 1..ends.len() {
+        ends[place] += ends[place - 1];
+    }
+    // What it came to goes on a little, that it is seen.
+    let last = ends.last().map_or(1.0, |end| 1.08 * end);
+    // Each goes on as it was until the end of a recording.
+    let starts = [0.0].into_iter().chain(ends.iter().copied());
+    let spans = starts.zip(ends.iter().copied().chain([last]));
+    let times: Vec<f64> = spans.flat_map(|(start, end)| [start, end]).collect();
     let series = |label: &str, values: Vec<f64>, (role, stroke)| {
-        let times = times[..values.len()].to_vec();
-        Series::new(label, times, values, role, stroke)
+        let values: Vec<f64> = values.into_iter().flat_map(|value| [value; 2]).collect();
+        Series::new(label, times.clone(), values, role, stroke)
     };
     let drawn = names.iter().zip(ROLES).map(|(name, role)| {
         let own = odds
@@ -499,7 +503,7 @@ fn tree(odds: &[Odds], asked: &[Asked], names: &[&str]) -> Panel<'static> {
     Panel {
         title: String::new(),
         vertical_label: "probability [1]".to_owned(),
-        horizontal: Horizontal::Quantity("recorded of its own choice [s]".to_owned()),
+        horizontal: Horizontal::Quantity("recorded time [s]".to_owned()),
         series: drawn.chain([none]).collect(),
         within: Some([0.0, 1.0]),
         ..Panel::default()
