@@ -9,6 +9,7 @@ mod bad_input;
 mod balance;
 mod bench_reference;
 mod cell_drives;
+mod cell_experiment;
 mod ci_job;
 mod collision;
 mod command_line;

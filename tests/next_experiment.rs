@@ -30,7 +30,7 @@ fn begun(case: &str, limits: &str) -> Bench {
 }
 
 /// A rig that is a shell script.
-fn rig(bench: &Bench, script: &str) {
+pub fn rig(bench: &Bench, script: &str) {
     use std::os::unix::fs::PermissionsExt as _;
     let program = env!("CARGO_BIN_EXE_idc");
     bench.write("rig.sh", format!("#!/bin/sh\nIDC={program}\n{script}\n"));
@@ -327,8 +327,8 @@ fn what_cannot_be_asked_is_refused() {
             vec!["surface_most_m", "at least surface_least_m"],
         ),
         (
-            "\n[limits]\nforce_n = 1e-6\n",
-            vec!["--may", "set_pressure"],
+            "\n[limits]\nforce_n = 1e-6\nsurface_least_m = 0.021\nsurface_most_m = 0.028\n",
+            vec!["--may", "surface"],
             vec!["force_n", "[limits]"],
         ),
         (

@@ -92,9 +92,9 @@ pub const PROGRAMS: [Program; 3] = [
 /// Times, places along the edge, angles of the joints, set pressures.
 pub struct Commands {
     pub time: Vec<f64>,
-    path: Vec<f64>,
+    pub path: Vec<f64>,
     pub joints: Vec<Vec<f64>>,
-    set_pressure: Vec<f64>,
+    pub set_pressure: Vec<f64>,
 }
 
 /// The project's own job in a program.
@@ -152,9 +152,15 @@ pub fn inputs(
     program: &Program,
 ) -> (Commands, PlantInputs) {
     let made = commands(program);
+    let inputs = carried_out(cell, plant, &made);
+    (made, inputs)
+}
+
+/// What commands are to a cell with physics planted in it.
+pub fn carried_out(cell: &LoadedCell, plant: &PlantParameters, made: &Commands) -> PlantInputs {
     let bandwidth = plant.cell.servo_bandwidth;
     let trajectory = cell.trajectory(&made.time, &made.path, &made.joints, bandwidth);
-    let inputs = PlantInputs {
+    PlantInputs {
         time: made.time.clone(),
         set_pressure: made.set_pressure.clone(),
         extends: vec![true; made.time.len()],
@@ -163,8 +169,7 @@ pub fn inputs(
         motion: None,
         initial: InitialState::AtRest,
         place: 0,
-    };
-    (made, inputs)
+    }
 }
 
 /// Records a program with physics planted in the cell.
@@ -175,10 +180,18 @@ pub fn record(
     folder: &Path,
 ) -> Vec<Vec<f64>> {
     let (made, inputs) = inputs(cell, plant, program);
-    let bandwidth = plant.cell.servo_bandwidth;
     let readings = simulate(plant, &inputs).readings;
-    let mut random =
-        ChaCha8Rng::seed_from_u64(7 + program.name.len() as u64 + (program.feed * 1e3) as u64);
+    let seed = 7 + program.name.len() as u64 + (program.feed * 1e3) as u64;
+    let measured = (program.name != "c").then_some(&readings[..3]);
+    let text = text(&made, plant.cell.servo_bandwidth, measured, seed);
+    std::fs::create_dir_all(folder).unwrap();
+    std::fs::write(folder.join(format!("{}.csv", program.name)), text).unwrap();
+    readings[..3].to_vec()
+}
+
+/// A recording as a file: commands, encoders and, where they are measured, the readings of outlet, stroke and force, with noise.
+pub fn text(made: &Commands, bandwidth: f64, measured: Option<&[Vec<f64>]>, seed: u64) -> String {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut noisy =
         |value: f64, noise: f64| value + noise * random.sample::<f64, _>(StandardNormal);
     let encoders: Vec<Vec<f64>> = made
@@ -186,12 +199,11 @@ pub fn record(
         .iter()
         .map(|joint| follow(&made.time, joint, bandwidth).angle)
         .collect();
-    let measured = program.name != "c";
     let mut text = String::from("time_s,path_m,set_pressure_pa");
     for joint in 1..=made.joints.len() {
         let _ = write!(text, ",joint_{joint}_command_rad,joint_{joint}_rad");
     }
-    text += if measured {
+    text += if measured.is_some() {
         ",regulator_pressure_pa,stroke_m,force_n\n"
     } else {
         "\n"
@@ -205,16 +217,12 @@ pub fn record(
         for (command, encoder) in made.joints.iter().zip(&encoders) {
             let _ = write!(text, ",{},{}", command[i], noisy(encoder[i], NOISE[0]));
         }
-        if measured {
-            for channel in 0..3 {
-                let _ = write!(text, ",{}", noisy(readings[channel][i], NOISE[channel + 1]));
-            }
+        for (channel, readings) in measured.into_iter().flatten().enumerate() {
+            let _ = write!(text, ",{}", noisy(readings[i], NOISE[channel + 1]));
         }
         text.push('\n');
     }
-    std::fs::create_dir_all(folder).unwrap();
-    std::fs::write(folder.join(format!("{}.csv", program.name)), text).unwrap();
-    readings[..3].to_vec()
+    text
 }
 
 /// A planted effect: name, joint, its first number, what is planted.

@@ -9,6 +9,7 @@ use super::cell_drives::CellDrives;
 use super::error::CaseError;
 use super::recordings::{SAMPLES, is_run};
 use crate::diagnosis::answer::details::PredictionError;
+use crate::diagnosis::experiment::ride::{ArmCommands, ArmReach, Course};
 use crate::diagnosis::fit::free::{Free, Prior};
 use crate::diagnosis::joints::friction::{DriveLoad, JointFriction, joint_friction};
 use crate::diagnosis::joints::servo::{Axes, ServoLink, pushed_servo_link, servo_link};
@@ -43,6 +44,20 @@ pub(super) struct CellCase {
     pub arm: Option<CellDrives>,
     /// Errors of what is said of the arm in the recording that is to be predicted.
     pub of_arm: Vec<PredictionError>,
+    /// Where the arm went in its recordings while the device pressed.
+    courses: Vec<Course>,
+    /// Bandwidth of the servos [Hz].
+    bandwidth: f64,
+}
+
+impl CellCase {
+    /// How far an experiment may move the arm; none where it stood still in all recordings.
+    pub fn arm_reach(&self, cell: &LoadedCell) -> Option<ArmReach> {
+        let stated = cell.scenario.limits.joint_motion;
+        let (cell, bandwidth) = (cell.clone(), self.bandwidth);
+        let replay = move |commands: ArmCommands| inputs(&cell, commands, None, bandwidth);
+        ArmReach::new(self.courses.clone(), stated, Arc::new(replay))
+    }
 }
 
 /// Name, file and content.
@@ -137,10 +152,7 @@ fn known_and_unseen(
 pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, CaseError> {
     let (known, mut unseen) = known_and_unseen(cell, folder)?;
     let scenario = &cell.scenario;
-    let axes: Vec<Axes> = known
-        .iter()
-        .map(|(_, _, recording)| axes(recording))
-        .collect();
+    let axes = all_axes(&known);
     let (noise, bandwidth) = (scenario.joint_noise, scenario.nominal.cell.servo_bandwidth);
     let servo = if scenario.observed.motors_by_encoders {
         let own = scenario.arm.servo.natural_frequency;
@@ -175,6 +187,7 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, CaseErr
         // Where the motors went is to be predicted too.
         recording.encoders.fill(None);
     }
+    let courses = courses(&known);
     let mut named = |(name, file, recording): (String, String, CellRecording)| {
         recorded(cell, &file, recording, bandwidth).map(|recorded| NamedRecording {
             name,
@@ -210,7 +223,55 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, CaseErr
         frictions,
         arm,
         of_arm: of_arm.unwrap_or_default(),
+        courses,
+        bandwidth,
     })
+}
+
+/// Where the arm went while the device pressed.
+fn courses(known: &[Named]) -> Vec<Course> {
+    let course = |(name, _, recording): &Named| {
+        let mut commands = commands(recording);
+        hold(&mut commands.set_pressure);
+        Course::of(name, &commands)
+    };
+    known.iter().filter_map(course).collect()
+}
+
+/// What the arm is commanded in a recording.
+fn commands(recording: &CellRecording) -> ArmCommands {
+    ArmCommands {
+        time: recording.time.clone(),
+        path: recording.path.clone(),
+        joints: recording.commands.clone(),
+        set_pressure: recording.set_pressure.clone(),
+    }
+}
+
+/// Inputs of the plant by what the arm is commanded, and where its encoders say that it went.
+fn inputs(
+    cell: &LoadedCell,
+    commands: ArmCommands,
+    encoders: Option<&[Option<Vec<f64>>]>,
+    bandwidth: f64,
+) -> PlantInputs {
+    let ArmCommands {
+        time,
+        path,
+        joints,
+        set_pressure,
+    } = commands;
+    let trajectory = cell.trajectory_of(&time, &path, &joints, encoders, bandwidth);
+    PlantInputs {
+        set_pressure,
+        extends: vec![true; time.len()],
+        surface: trajectory.contact_kinematics(&cell.plant().cell).surface(),
+        cell: Some(Arc::new(trajectory)),
+        motion: None,
+        initial: InitialState::AtRest,
+        place: 0,
+        time,
+    }
 }
 
 /// Friction of each joint by the drives' torques, where they were recorded.
@@ -264,12 +325,13 @@ fn drives(cell: &LoadedCell, recording: &CellRecording) -> Vec<DriveLoad> {
     drives.into_iter().flatten().map(load).collect()
 }
 
-fn axes(recording: &CellRecording) -> Axes {
-    Axes {
+fn all_axes(known: &[Named]) -> Vec<Axes> {
+    let of = |(_, _, recording): &Named| Axes {
         time: recording.time.clone(),
         commands: recording.commands.clone(),
         encoders: recording.encoders.clone(),
-    }
+    };
+    known.iter().map(of).collect()
 }
 
 fn recorded(
@@ -282,24 +344,20 @@ fn recorded(
     let CellRecording {
         time,
         path,
-        commands,
+        commands: joints,
         encoders,
         mut set_pressure,
         readings,
         ..
     } = recording;
     let filled = hold(&mut set_pressure);
-    let trajectory = cell.trajectory_of(&time, &path, &commands, Some(&encoders), bandwidth);
-    let inputs = PlantInputs {
-        set_pressure,
-        extends: vec![true; time.len()],
-        surface: trajectory.contact_kinematics(&cell.plant().cell).surface(),
-        cell: Some(Arc::new(trajectory)),
-        motion: None,
-        initial: InitialState::AtRest,
-        place: 0,
+    let commands = ArmCommands {
         time,
+        path,
+        joints,
+        set_pressure,
     };
+    let inputs = inputs(cell, commands, Some(&encoders), bandwidth);
     check(file, &inputs)?;
     let nothing = vec![f64::NAN; inputs.time.len()];
     let mut readings = QUANTITIES.map(|quantity| {

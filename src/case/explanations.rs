@@ -27,6 +27,9 @@ pub struct Explanations {
     schema: u32,
     /// Folder of the case, as it was given.
     pub case: PathBuf,
+    /// Scenario file of its cell; none of a bench.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scenario: Option<PathBuf>,
     /// Recordings beside those that its rig file names.
     pub recordings: Vec<PathBuf>,
     /// What they were found in.
@@ -49,7 +52,7 @@ pub struct Kept {
 
 impl Explanations {
     pub(super) fn of(
-        (case, recordings): (&Path, &[PathBuf]),
+        (case, scenario, recordings): (&Path, Option<&Path>, &[PathBuf]),
         diagnosis: &Diagnosis,
         made_of: &Provenance,
     ) -> Self {
@@ -63,6 +66,7 @@ impl Explanations {
         Self {
             schema: SCHEMA,
             case: case.to_owned(),
+            scenario: scenario.map(Path::to_owned),
             recordings: recordings.to_vec(),
             made_of: made_of.clone(),
             none_of_these: diagnosis.none_of_these(),

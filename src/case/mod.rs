@@ -50,6 +50,7 @@ use crate::diagnosis::data_fault::fault::DataFault;
 use crate::diagnosis::data_fault::{as_read, refined, reported};
 use crate::diagnosis::diagnose as search;
 use crate::diagnosis::difference::comparison::{Comparison, of_flange};
+use crate::diagnosis::experiment::ride::ArmReach;
 use crate::diagnosis::flange::Run;
 use crate::diagnosis::flange::answer::FlangeDiagnosis;
 use crate::diagnosis::flange::fit::fit_flange;
@@ -61,7 +62,9 @@ use crate::diagnosis::search::progress::Observer;
 use crate::diagnosis::settings::Settings;
 use crate::effects::own_effect;
 use crate::flange::FittedFlange;
-use crate::plant::{Channel, DeviceParts, LawText, OwnLaw, PlantInputs, PlantParameters, simulate};
+use crate::plant::{
+    Channel, DeviceParts, LawText, OperatingLimits, OwnLaw, PlantInputs, PlantParameters, simulate,
+};
 use crate::recording::csv::columns_text;
 use crate::recording::provenance::Provenance;
 use crate::replay::LoadedCell;
@@ -180,7 +183,12 @@ impl Case {
 
     /// Has the diagnosis go on from explanations that were found in a part of the recordings.
     pub fn go_on_from(&mut self, explanations: &Explanations) {
-        if let Kind::Rig { input, .. } = &mut self.kind {
+        let input = match &mut self.kind {
+            Kind::Rig { input, .. } => Some(input.as_mut()),
+            Kind::Cell { read, .. } => Some(&mut read.input),
+            Kind::Flange { .. } | Kind::Arm(_) => None,
+        };
+        if let Some(input) = input {
             let kept = explanations.explanations.iter();
             input.kept = kept.map(|own| own.explanation.clone()).collect();
         }
@@ -300,6 +308,24 @@ impl Case {
         }
     }
 
+    /// How far an experiment may move what the recordings are of, by its file; none where no experiment is proposed.
+    #[must_use]
+    pub fn operating_limits(&self) -> Option<OperatingLimits> {
+        match &self.kind {
+            Kind::Cell { cell, .. } => Some(cell.scenario.limits),
+            _ => self.bench_rig().map(|rig| rig.limits),
+        }
+    }
+
+    /// How far an experiment may move the arm of a cell; none on a bench, or where it never moved while the device pressed.
+    #[must_use]
+    pub fn arm_reach(&self) -> Option<ArmReach> {
+        match &self.kind {
+            Kind::Cell { cell, read } => read.arm_reach(cell),
+            _ => None,
+        }
+    }
+
     fn rig_source(&self) -> (String, PathBuf) {
         match &self.kind {
             Kind::Rig { rig, .. } | Kind::Flange { rig, .. } => (RIG.to_owned(), rig.path.clone()),
@@ -409,8 +435,9 @@ pub fn diagnose(
         Kind::Arm(case) => case.diagnosed(start, observer)?,
     };
     diagnosed.answer.details.case.clone_from(&case.name);
-    if let (Some(diagnosis), Some(_)) = (&diagnosed.diagnosis, case.bench_rig()) {
-        let of = (case.folder.as_path(), &case.added[..]);
+    if let (Some(diagnosis), Some(_)) = (&diagnosed.diagnosis, case.operating_limits()) {
+        let scenario = case.cell().map(|cell| cell.scenario.path.as_path());
+        let of = (case.folder.as_path(), scenario, &case.added[..]);
         diagnosed.explanations = Some(Explanations::of(of, diagnosis, &provenance));
     }
     diagnosed.answer.details.provenance = provenance;

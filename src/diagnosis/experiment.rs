@@ -7,6 +7,7 @@ pub mod limits;
 pub mod next_experiment;
 mod open;
 pub mod programme;
+pub mod ride;
 
 use super::recordings::evidence::Evidence;
 use crate::plant::{InitialState, PlantInputs, PlantParameters};

@@ -21,4 +21,6 @@ pub struct OperatingLimits {
     pub force: Option<f64>,
     /// Longest recording [s].
     pub duration: Option<f64>,
+    /// Largest speed [rad/s] and acceleration [rad/s2] of the joints of a cell's arm.
+    pub joint_motion: [Option<f64>; 2],
 }

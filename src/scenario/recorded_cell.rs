@@ -17,7 +17,7 @@ use crate::keys::check::Section;
 use crate::keys::declaration::{names, tables};
 use crate::keys::document::{Document, read_text};
 use crate::keys::error::ScenarioError;
-use crate::plant::{Nominal, Observation, Periodic, PlantParameters};
+use crate::plant::{Nominal, Observation, OperatingLimits, Periodic, PlantParameters};
 use crate::sensing::{FilterParameters, Measurement};
 
 mod improved;
@@ -65,6 +65,8 @@ pub struct RecordedCell {
     pub has_job: bool,
     /// Samples per second of its sensors, if they are fewer than the recording's rows [Hz].
     pub sample_rate: f64,
+    /// How far an experiment may move it.
+    pub limits: OperatingLimits,
 }
 
 /// Relative tolerance of a number that a scenario states: none of a data sheet is truer.
@@ -144,6 +146,7 @@ pub fn load_recorded_cell(path: &Path) -> Result<RecordedCell, ScenarioError> {
         joint_damping_deviation: joints.damping_time_tolerance,
         joint_noise: sensors.joints,
         noise: [sensors.regulator_pressure, sensors.stroke, sensors.force],
+        limits: file.limits.limits(),
     })
 }
 
@@ -205,6 +208,7 @@ fn of_scenario(
         observed: Observation::RUN,
         has_job: true,
         sample_rate: sensing.sample_rate,
+        limits: OperatingLimits::default(),
     })
 }
 

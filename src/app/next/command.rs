@@ -14,16 +14,18 @@ use super::error::NextError;
 use super::files::NAMES;
 use super::outputs::write;
 use super::page;
-use super::proposal::{Allowed, Proposal, bench_rig, diagnosed};
+use super::proposal::{Allowed, Proposal, case_in, diagnosed, stated_limits};
 use crate::case::{Case, EXPLANATIONS, Explanations};
 use crate::document::{Style, text};
+use crate::replay::LoadedCell;
 
 /// For the help.
 pub(in super::super) const EXAMPLES: &str = "\
 The recordings of a rig are diagnosed; then set pressure, valve and surface are
-sought that are expected to tell most, per second, of which explanation is right
-and, once that is settled, of how large its numbers are. Nothing is moved
-farther than [limits] of rig.toml allows and, where it states nothing, than the
+sought, of a cell set pressure and the arm's ride along the path of its
+recordings, that are expected to tell most, per second, of which explanation is
+right and, once that is settled, of how large its numbers are. Nothing is moved
+farther than [limits] of the file allows and, where it states nothing, than the
 recordings moved it; the force on the part is kept by 20 draws of the numbers of
 every open explanation. Given the results of a diagnosis in place of a case, it
 goes on from them. Exit codes: 0 written, 2 bad input.
@@ -37,8 +39,11 @@ Examples:
 
 #[derive(Debug, Args)]
 pub(in super::super) struct NextArguments {
-    /// Folder with rig.toml and the recordings that it names, or with the results of its diagnosis, which is gone on from.
+    /// Folder with rig.toml and the recordings that it names, with the recordings of a cell (--scenario), or with the results of their diagnosis, which is gone on from.
     case: PathBuf,
+    /// Scenario file of a cell that the recordings are of.
+    #[arg(long)]
+    scenario: Option<PathBuf>,
     #[command(flatten)]
     allowed: Allowed,
     /// Folder for inputs.csv, bench.toml, instructions.txt, expected.svg, report.html and next.json [default: runs/<name of the case's folder>].
@@ -56,13 +61,18 @@ pub(in super::super) struct NextArguments {
 }
 
 /// A case by its folder, or by that of its diagnosis: then with what it found.
-fn case_of(folder: &Path) -> Result<Case, AppError> {
+fn case_of(folder: &Path, scenario: Option<&Path>) -> Result<Case, AppError> {
     let file = folder.join(EXPLANATIONS);
     if !file.is_file() {
-        return Ok(Case::from_folder(folder)?);
+        let cell = scenario.map(LoadedCell::load).transpose()?;
+        return case_in(folder, cell.as_ref());
     }
     let known = Explanations::read(&file)?;
-    let mut case = Case::with_recordings(&known.case, &known.recordings)?;
+    let cell = (scenario.or(known.scenario.as_deref())).map(LoadedCell::load);
+    let mut case = match cell.transpose()? {
+        Some(cell) => Case::of_cell(&known.case, &cell)?,
+        None => Case::with_recordings(&known.case, &known.recordings)?,
+    };
     match known.outdated(&case.provenance()?) {
         None => case.go_on_from(&known),
         Some(why) => say_aside(&format!(
@@ -76,8 +86,8 @@ fn case_of(folder: &Path) -> Result<Case, AppError> {
 /// Chooses an experiment and writes it.
 pub(in super::super) fn run(arguments: &NextArguments) -> Result<ExitCode, AppError> {
     let silent = arguments.quiet || arguments.json;
-    let case = case_of(&arguments.case)?;
-    bench_rig(&case)?;
+    let case = case_of(&arguments.case, arguments.scenario.as_deref())?;
+    stated_limits(&case)?;
     let out = output_folder(arguments.out.as_ref(), &arguments.case);
     let folder = OutputFolder::prepare(&out, &NAMES, OverwritePolicy::of(arguments.force))?;
     let _interruptible = Interruptible::of_one("choice", &out);

@@ -7,9 +7,17 @@ use crate::diagnosis::experiment::limits::LimitError;
 pub enum NextError {
     /// Nothing that a bench could do.
     #[error(
-        "{case}: experiments are proposed of a whole device on a bench, expected a folder with a rig.toml without [rig] chain; of a recorded arm `idc check ARM --design` writes one"
+        "{case}: experiments are proposed of a whole device, expected a folder with a rig.toml without [rig] chain, or a cell's recordings with --scenario; of a recorded arm `idc check ARM --design` writes one"
     )]
     NoBench {
+        /// Name of the case.
+        case: String,
+    },
+    /// A cell whose device never presses.
+    #[error(
+        "{case}: the set pressure is zero in every recording, expected one of a ride: experiments move the arm along the path on which its device pressed"
+    )]
+    NoCourse {
         /// Name of the case.
         case: String,
     },
@@ -48,7 +56,7 @@ pub enum NextError {
     },
     /// It refuses whatever is asked.
     #[error(
-        "--rig {program}: refused {tries} experiments (exit code 3){said}; expected one that it takes: state its limits in [limits] of rig.toml"
+        "--rig {program}: refused {tries} experiments (exit code 3){said}; expected one that it takes: state its limits in [limits] of the rig or cell file"
     )]
     Refused {
         /// The program.
@@ -78,7 +86,7 @@ pub enum NextError {
         /// Time in it [s].
         time: f64,
         /// The column.
-        column: &'static str,
+        column: String,
         /// What it holds.
         found: String,
         /// What was asked for.

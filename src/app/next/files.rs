@@ -14,34 +14,70 @@ pub(super) const INPUTS: &str = "inputs.csv";
 pub(super) const BENCH: &str = "bench.toml";
 /// The best explanation, which the bench takes as its device.
 pub(super) const DEVICE: &str = "device.toml";
+/// The best explanation as a recorded cell.
+pub(super) const CELL: &str = "cell.toml";
 pub(super) const INSTRUCTIONS: &str = "instructions.txt";
 pub(super) const EXPECTED: &str = "expected.svg";
 pub(super) const NEXT: &str = "next.json";
 /// All of them.
-pub(super) const NAMES: [&str; 7] = [INPUTS, BENCH, DEVICE, INSTRUCTIONS, EXPECTED, REPORT, NEXT];
-/// Columns of the inputs, as a recording has them.
-pub(super) const COLUMNS: [&str; 3] = ["set_pressure_pa", "solenoid", "surface_m"];
+pub(super) const NAMES: [&str; 8] = [
+    INPUTS,
+    BENCH,
+    DEVICE,
+    CELL,
+    INSTRUCTIONS,
+    EXPECTED,
+    REPORT,
+    NEXT,
+];
+
+/// A column of the inputs as a recording has it, and by how much a recording may differ there at least.
+pub(super) struct InputColumn {
+    pub name: String,
+    pub values: Vec<f64>,
+    pub slack: f64,
+}
+
+/// Columns of the inputs.
+pub(super) fn columns(proposal: &Proposal) -> Vec<InputColumn> {
+    let column = |name: &str, values: &[f64], slack| InputColumn {
+        name: name.to_owned(),
+        values: values.to_vec(),
+        slack,
+    };
+    let inputs = &proposal.inputs;
+    let pressure = column("set_pressure_pa", &inputs.set_pressure, 100.0);
+    let commands = proposal.chosen.programme.arm_commands(&proposal.limits);
+    if let Some(commands) = commands {
+        let joint = |(place, values): (usize, &Vec<f64>)| {
+            column(&format!("joint_{}_command_rad", place + 1), values, 1e-3)
+        };
+        let path = column("path_m", &commands.path, 1e-3);
+        let joints = commands.joints.iter().enumerate().map(joint);
+        return [path].into_iter().chain(joints).chain([pressure]).collect();
+    }
+    let valve: Vec<f64> = valve(&inputs.extends);
+    vec![
+        pressure,
+        column("solenoid", &valve, 0.01),
+        column("surface_m", &inputs.surface, 2e-4),
+    ]
+}
+
+/// Whether a valve extends, as numbers.
+pub(super) fn valve(extends: &[bool]) -> Vec<f64> {
+    extends.iter().map(|e| f64::from(u8::from(*e))).collect()
+}
 
 /// Inputs with their times.
 pub(super) fn inputs(proposal: &Proposal) -> Result<String, AppError> {
-    let inputs = proposal.chosen.programme.inputs(&proposal.limits);
-    let solenoid: Vec<f64> = inputs
-        .extends
-        .iter()
-        .map(|e| f64::from(u8::from(*e)))
-        .collect();
     // A clock's digits, not those of a sum.
-    let time: Vec<f64> = inputs
-        .time
-        .iter()
-        .map(|t| (t * 1e9).round() / 1e9)
+    let time = proposal.inputs.time.iter();
+    let time: Vec<f64> = time.map(|t| (t * 1e9).round() / 1e9).collect();
+    let columns = columns(proposal);
+    let columns: Vec<(&str, &[f64])> = (columns.iter())
+        .map(|own| (own.name.as_str(), own.values.as_slice()))
         .collect();
-    let [pressure, valve, surface] = COLUMNS;
-    let columns: [(&str, &[f64]); 3] = [
-        (pressure, &inputs.set_pressure),
-        (valve, &solenoid),
-        (surface, &inputs.surface),
-    ];
     Ok(columns_text(&time, &columns)?)
 }
 
@@ -56,7 +92,7 @@ pub(super) fn bench(proposal: &Proposal, case: &str) -> String {
         commands.len() as f64 * HOLD
     );
     // Writing into a text cannot fail.
-    let _ = match &programme.surface {
+    let _ = match programme.surface() {
         None => write!(text, "\n[load]\nkind = \"free\"\n"),
         Some(own) if own.peak_to_peak < 1e-6 => write!(
             text,
@@ -134,7 +170,7 @@ pub(super) fn json(proposal: &Proposal) -> Value {
         "information_on_which_nat": round(chosen.expected.which),
         "information_on_how_much_nat": round(chosen.expected.how_much),
         "largest_force_n": (chosen.force * 10.0).round() / 10.0,
-        "instructions": chosen.programme.instructions(),
+        "instructions": chosen.programme.instructions(&proposal.limits),
         "left_open": proposal.left_open(),
     })
 }

@@ -7,7 +7,7 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::super::error::{AppError, ExitCode};
-use super::super::files::{OutputFolder, OverwritePolicy, REPORT, output_folder};
+use super::super::files::{OutputFolder, OverwritePolicy, REPORT, is_same, output_folder};
 use super::super::interrupt::Interruptible;
 use super::super::output::say;
 use super::super::progress;
@@ -15,9 +15,9 @@ use super::error::NextError;
 use super::files;
 use super::outputs::write;
 use super::page::ROLES;
-use super::proposal::{Allowed, Proposal, bench_rig, diagnosed};
-use super::rig_program::{Reply, RigProgram, check_inputs};
-use crate::case::{Case, Diagnosed, Explanations, IMPROVED, RIG, read_rig, rig_of, to_fit};
+use super::proposal::{Allowed, Proposal, case_in, diagnosed, stated_limits};
+use super::rig_program::{Reply, Returned, RigProgram, check_inputs};
+use crate::case::{Case, Diagnosed, Explanations, IMPROVED, RIG, rig_of, to_fit};
 use crate::diagnosis::answer::Answer;
 use crate::diagnosis::experiment::information::Open;
 use crate::diagnosis::experiment::limits::LimitError;
@@ -25,10 +25,10 @@ use crate::document::{
     Block, Cell, Column, Document, Horizontal, Panel, Role, Section, Series, Stroke, Style, Table,
     Tone, html, text,
 };
-use crate::plant::DeviceParts;
 use crate::quantity::percent;
 use crate::recording::RecordingError;
 use crate::recording::atomic::{make_folder, write_all, write_text};
+use crate::replay::LoadedCell;
 use crate::report;
 use crate::scenario::rig_file::{RigFile, text_with_recordings};
 
@@ -38,10 +38,11 @@ The recordings of a rig are diagnosed, the experiment is chosen that is expected
 to tell most of what they leave open, and the rig's program is called with its
 inputs: PROGRAM IN.csv OUT.csv. Its recording joins the others, and so on until
 one explanation is as probable as --until asks, or nothing that is allowed would
-settle it. IN.csv has columns time_s, set_pressure_pa, solenoid, surface_m;
-OUT.csv those and what was measured. Exit codes of the program: 0 recorded, 3
-these inputs are refused, 4 try again. Exit codes here: 0 settled, or nothing is
-missing; 1 it stays open; 2 bad input.
+settle it. IN.csv has columns time_s, set_pressure_pa, solenoid, surface_m, of a
+cell time_s, path_m, joint_N_command_rad, set_pressure_pa; OUT.csv those and
+what was measured. Exit codes of the program: 0 recorded, 3 these inputs are
+refused, 4 try again. Exit codes here: 0 settled, or nothing is missing; 1 it
+stays open; 2 bad input.
 
 The folder case/ of the results holds all recordings with their rig.toml: `idc
 diagnose` of it comes to the same from the beginning.
@@ -62,8 +63,11 @@ const WORTH: f64 = 0.02;
 
 #[derive(Debug, Args)]
 pub(in super::super) struct InvestigateArguments {
-    /// Folder with rig.toml and the recordings that it names.
+    /// Folder with rig.toml and the recordings that it names, or with the recordings of a cell (--scenario).
     case: PathBuf,
+    /// Scenario file of a cell that the recordings are of.
+    #[arg(long)]
+    scenario: Option<PathBuf>,
     /// Program of the rig, called as PROGRAM IN.csv OUT.csv.
     #[arg(long, value_name = "PROGRAM")]
     rig: PathBuf,
@@ -171,35 +175,95 @@ impl Odds {
     }
 }
 
-/// The case that grows: rig file and recordings in a folder of their own.
+/// The case that grows: recordings in a folder of their own, of a bench with their rig file.
 struct Growth {
     folder: PathBuf,
-    rig: RigFile,
+    /// The rig file of a bench.
+    rig: Option<RigFile>,
+    /// The cell.
+    cell: Option<LoadedCell>,
     names: Vec<String>,
 }
 
 impl Growth {
-    fn of(case: &Path, folder: PathBuf) -> Result<Self, AppError> {
-        let rig = rig_of(case)?;
-        let names = to_fit(&rig, case)?;
-        make_folder(&folder).map_err(|error| RecordingError::write(&folder, error))?;
-        for name in &names {
-            copy(&case.join(name), &folder.join(name))?;
+    fn of(
+        folder: &Path,
+        (case, cell): (&Case, Option<LoadedCell>),
+        to: PathBuf,
+    ) -> Result<Self, AppError> {
+        if is_same(folder, &to) {
+            return Err(AppError::AmongInputs {
+                folder: to.display().to_string(),
+            });
         }
-        let growth = Self { folder, rig, names };
+        let mut growth = Self {
+            folder: to,
+            rig: None,
+            names: Vec::new(),
+            cell,
+        };
+        if growth.cell.is_none() {
+            let rig = rig_of(folder)?;
+            for name in to_fit(&rig, folder)? {
+                growth.take(name.clone(), &folder.join(name))?;
+            }
+            growth.rig = Some(rig);
+        } else {
+            growth.forget_earlier_runs();
+            let recordings = case.input().map(|input| &input.recordings);
+            for own in recordings.into_iter().flatten() {
+                let file = Path::new(&own.file);
+                // A run of this program is a folder of the name that it is called by.
+                let within = file.file_name().filter(|name| **name != *own.name);
+                let name = within.map_or(PathBuf::from(&own.name), |name| {
+                    Path::new(&own.name).join(name)
+                });
+                growth.take(name.display().to_string(), file)?;
+            }
+        }
         growth.write()?;
         Ok(growth)
     }
 
-    /// Its rig file, with all recordings.
+    /// A cell's recordings are all that stand in its folder: those of an earlier investigation are none of them.
+    fn forget_earlier_runs(&self) {
+        let entries = std::fs::read_dir(&self.folder).into_iter().flatten();
+        for entry in entries.flatten() {
+            let name = entry.file_name().display().to_string();
+            let number = name
+                .strip_prefix("run-")
+                .and_then(|n| n.strip_suffix(".csv"));
+            if number.is_some_and(|n| n.parse::<u32>().is_ok()) {
+                let _ = std::fs::remove_file(entry.path());
+            }
+        }
+    }
+
+    /// The case with all recordings.
+    fn case(&self) -> Result<Case, AppError> {
+        case_in(&self.folder, self.cell.as_ref())
+    }
+
+    /// The rig file of a bench, with all recordings.
     fn write(&self) -> Result<(), AppError> {
-        let text = text_with_recordings(&self.rig, &self.names);
+        let Some(rig) = &self.rig else {
+            return Ok(());
+        };
+        let text = text_with_recordings(rig, &self.names);
         Ok(write_text(&self.folder.join(RIG), &text)?)
     }
 
-    fn add(&mut self, name: String, recording: &Path) -> Result<(), AppError> {
-        copy(recording, &self.folder.join(&name))?;
+    fn take(&mut self, name: String, recording: &Path) -> Result<(), AppError> {
+        let to = self.folder.join(&name);
+        let folder = to.parent().unwrap_or(&self.folder);
+        make_folder(folder).map_err(|error| RecordingError::write(folder, error))?;
+        copy(recording, &to)?;
         self.names.push(name);
+        Ok(())
+    }
+
+    fn add(&mut self, name: String, recording: &Path) -> Result<(), AppError> {
+        self.take(name, recording)?;
         self.write()
     }
 }
@@ -215,8 +279,10 @@ pub(in super::super) fn investigate(
     arguments: &InvestigateArguments,
 ) -> Result<ExitCode, AppError> {
     let silent = arguments.quiet || arguments.json;
-    let case = Case::from_folder(&arguments.case)?;
-    bench_rig(&case)?;
+    let cell = arguments.scenario.as_deref().map(LoadedCell::load);
+    let cell = cell.transpose()?;
+    let case = case_in(&arguments.case, cell.as_ref())?;
+    stated_limits(&case)?;
     let out = output_folder(arguments.out.as_ref(), &arguments.case);
     let folder = OutputFolder::prepare(&out, &NAMES, OverwritePolicy::of(arguments.force))?;
     let _interruptible = Interruptible::of_one("investigation", &out);
@@ -225,13 +291,13 @@ pub(in super::super) fn investigate(
         patience: arguments.patience,
     };
     let start = Instant::now();
+    let mut growth = Growth::of(&arguments.case, (&case, cell), out.join(CASE))?;
     let case_name = case.name;
-    let mut growth = Growth::of(&arguments.case, out.join(CASE))?;
     let mut odds: Vec<Odds> = Vec::new();
     let mut asked: Vec<Asked> = Vec::new();
     let mut known: Option<Explanations> = None;
     let (stop, found) = loop {
-        let mut case = Case::from_folder(&growth.folder)?;
+        let mut case = growth.case()?;
         if let Some(known) = &known
             && known.outdated(&case.provenance()?).is_none()
         {
@@ -332,17 +398,20 @@ fn ask(
         let recording = run.join(RECORDING);
         // What an earlier investigation left there is no answer.
         let _ = std::fs::remove_file(&recording);
+        let columns = files::columns(&proposal);
         loop {
-            match program.call(&run.join(files::INPUTS), &recording)? {
+            match program.call((&run.join(files::INPUTS), &columns), &recording)? {
                 Reply::Recorded => {
-                    let read = read_rig(DeviceParts::Whole, &recording)?;
-                    let inputs = proposal.chosen.programme.inputs(&proposal.limits);
-                    check_inputs(&recording, &read, &inputs)?;
+                    let returned = match case.cell() {
+                        Some(cell) => Returned::of_cell(&recording, cell)?,
+                        None => Returned::of_bench(&recording)?,
+                    };
+                    check_inputs(&recording, &returned, (&proposal.inputs.time, &columns))?;
                     return Ok(Next::Recorded(Asked {
                         name: format!("{name}.csv"),
                         duration: proposal.chosen.programme.duration(),
                         expected: proposal.expected_probability(),
-                        instructions: proposal.chosen.programme.instructions(),
+                        instructions: proposal.chosen.programme.instructions(&proposal.limits),
                     }));
                 }
                 Reply::Again if again + 1 < TRIES => again += 1,

@@ -1,7 +1,7 @@
 //! The page of an experiment: which explanations are open, what each predicts, and the odds that are expected afterwards.
 
 use super::super::error::AppError;
-use super::files::{BENCH, INPUTS};
+use super::files::{BENCH, CELL, INPUTS, valve};
 use super::proposal::Proposal;
 use crate::diagnosis::answer::words::{CHANNEL_UNITS, CHANNEL_WORDS};
 use crate::document::{
@@ -21,9 +21,54 @@ pub(super) const SETTLES: f64 = 0.95;
 /// All of it.
 pub(super) fn of_proposal(proposal: &Proposal, case: &str) -> Document<'static> {
     let chosen = &proposal.chosen;
-    let duration = chosen.programme.duration();
+    let (verdict, is_settled) = verdict(proposal);
+    let is_open = proposal.open.len() > 1;
+    let then = |place: usize| match is_open {
+        true => percent(chosen.expected.odds[place][place]),
+        false => String::new(),
+    };
+    let rows = proposal.open.iter().enumerate().map(|(place, own)| {
+        vec![
+            Cell::from(own.name.clone()),
+            Cell::from(percent(own.probability)),
+            Cell::from(then(place)),
+        ]
+    });
+    let none = vec![
+        Cell::from("none of these"),
+        Cell::from(percent(proposal.none_of_these)),
+        Cell::from(""),
+    ];
+    let columns =
+        Column::list("explanation | #probability now | #expected afterwards if it is right");
+    let table = Table::new("", columns, rows.chain([none]).collect());
+    let left_open = proposal.left_open().into_iter().map(Block::Paragraph);
+    let of_open = [Block::Table(table)].into_iter().chain(left_open).collect();
+    let steps = chosen.programme.instructions(&proposal.limits).into_iter();
+    let panels = panels(proposal).into_iter().map(Block::Panel).collect();
+    Document {
+        title: format!("Next experiment of {case}"),
+        verdict,
+        tone: if is_settled { Tone::Good } else { Tone::Open },
+        lead: vec![format!(
+            "The largest force on the part, over 20 draws of the numbers of every open explanation, is {:.0} N; {:.0} N are allowed.",
+            chosen.force, proposal.limits.force
+        )],
+        sections: vec![
+            Section::new("Open explanations", of_open),
+            Section::new("What to do", steps.map(Block::Paragraph).collect()),
+            Section::new("What each explanation predicts", panels).appendix(),
+        ],
+        footer: footer(proposal),
+        ..Document::default()
+    }
+}
+
+/// What the recording is expected to come to, and whether that settles it.
+fn verdict(proposal: &Proposal) -> (String, bool) {
+    let duration = proposal.chosen.programme.duration();
     let likeliest = percent(proposal.open[0].probability);
-    let (verdict, is_settled) = match proposal.expected_probability() {
+    match proposal.expected_probability() {
         Some(expected) if expected >= SETTLES => (
             format!(
                 "This recording of {duration:.1} s is expected to settle which explanation is right, if it is one of these: its probability comes to {}.",
@@ -51,48 +96,17 @@ pub(super) fn of_proposal(proposal: &Proposal, case: &str) -> Document<'static> 
             ),
             false,
         ),
-    };
-    let is_open = proposal.open.len() > 1;
-    let then = |place: usize| match is_open {
-        true => percent(chosen.expected.odds[place][place]),
-        false => String::new(),
-    };
-    let rows = proposal.open.iter().enumerate().map(|(place, own)| {
-        vec![
-            Cell::from(own.name.clone()),
-            Cell::from(percent(own.probability)),
-            Cell::from(then(place)),
-        ]
-    });
-    let none = vec![
-        Cell::from("none of these"),
-        Cell::from(percent(proposal.none_of_these)),
-        Cell::from(""),
-    ];
-    let columns =
-        Column::list("explanation | #probability now | #expected afterwards if it is right");
-    let table = Table::new("", columns, rows.chain([none]).collect());
-    let left_open = proposal.left_open().into_iter().map(Block::Paragraph);
-    let of_open = [Block::Table(table)].into_iter().chain(left_open).collect();
-    let steps = chosen.programme.instructions().into_iter();
-    let panels = panels(proposal).into_iter().map(Block::Panel).collect();
-    Document {
-        title: format!("Next experiment of {case}"),
-        verdict,
-        tone: if is_settled { Tone::Good } else { Tone::Open },
-        lead: vec![format!(
-            "The largest force on the part, over 20 draws of the numbers of every open explanation, is {:.0} N; {:.0} N are allowed.",
-            chosen.force, proposal.limits.force
-        )],
-        sections: vec![
-            Section::new("Open explanations", of_open),
-            Section::new("What to do", steps.map(Block::Paragraph).collect()),
-            Section::new("What each explanation predicts", panels).appendix(),
-        ],
-        footer: format!(
+    }
+}
+
+fn footer(proposal: &Proposal) -> String {
+    match proposal.limits.arm.is_some() {
+        true => format!(
+            "Made by idc next. {INPUTS} holds what arm and regulator are commanded, sample by sample, {CELL} the cell by the likeliest explanation."
+        ),
+        false => format!(
             "Made by idc next. {INPUTS} holds the inputs sample by sample, {BENCH} a bench that carries them out."
         ),
-        ..Document::default()
     }
 }
 
@@ -104,46 +118,54 @@ pub(super) fn picture(proposal: &Proposal) -> Result<String, AppError> {
     })?)
 }
 
-fn panels(proposal: &Proposal) -> Vec<Panel<'static>> {
-    let inputs = proposal.chosen.programme.inputs(&proposal.limits);
-    let series = |label: &str, values: Vec<f64>, role| {
-        Series::new(label, inputs.time.clone(), values, role, Stroke::Plain)
+/// What is asked for.
+fn asked(proposal: &Proposal) -> Vec<Panel<'static>> {
+    let inputs = &proposal.inputs;
+    let one = |label: &str, name: &str, values: Vec<f64>| {
+        let own = Series::new(
+            name,
+            inputs.time.clone(),
+            values,
+            Role::Command,
+            Stroke::Plain,
+        );
+        panel("asked for", label.to_owned(), vec![own])
     };
-    let panel = |title: &str, label: String, series| Panel {
+    let programme = &proposal.chosen.programme;
+    let bar = inputs.set_pressure.iter().map(|p| p * 1e-5).collect();
+    let mut all = vec![one("set pressure [bar]", "set pressure", bar)];
+    let valve = valve(&inputs.extends);
+    if valve.contains(&0.0) {
+        all.push(one("valve extends [1]", "valve", valve));
+    }
+    if let Some(commands) = programme.arm_commands(&proposal.limits) {
+        let path = commands.path.iter().map(|x| x * 1e3).collect();
+        all.push(one("path along the edge [mm]", "path", path));
+    }
+    if programme.surface().is_some_and(|s| s.peak_to_peak > 0.0) {
+        let surface = inputs.surface.iter().map(|x| x * 1e3).collect();
+        all.push(one("surface [mm]", "surface", surface));
+    }
+    all
+}
+
+fn panel(title: &str, label: String, series: Vec<Series<'static>>) -> Panel<'static> {
+    Panel {
         title: title.to_owned(),
         vertical_label: label,
         horizontal: Horizontal::Time,
         series,
         group: "time".to_owned(),
         ..Panel::default()
+    }
+}
+
+fn panels(proposal: &Proposal) -> Vec<Panel<'static>> {
+    let inputs = &proposal.inputs;
+    let series = |label: &str, values: Vec<f64>, role| {
+        Series::new(label, inputs.time.clone(), values, role, Stroke::Plain)
     };
-    let bar = inputs.set_pressure.iter().map(|p| p * 1e-5).collect();
-    let mut all = vec![panel(
-        "asked for",
-        "set pressure [bar]".to_owned(),
-        vec![series("set pressure", bar, Role::Command)],
-    )];
-    let valve: Vec<f64> = inputs
-        .extends
-        .iter()
-        .map(|e| f64::from(u8::from(*e)))
-        .collect();
-    if valve.contains(&0.0) {
-        all.push(panel(
-            "asked for",
-            "valve extends [1]".to_owned(),
-            vec![series("valve", valve, Role::Command)],
-        ));
-    }
-    let moves = (proposal.chosen.programme.surface.as_ref()).is_some_and(|s| s.peak_to_peak > 0.0);
-    if moves {
-        let surface = inputs.surface.iter().map(|x| x * 1e3).collect();
-        all.push(panel(
-            "asked for",
-            "surface [mm]".to_owned(),
-            vec![series("surface", surface, Role::Command)],
-        ));
-    }
+    let mut all = asked(proposal);
     for (channel, noise) in proposal.sensors.noise.iter().enumerate() {
         if !noise.is_finite() {
             continue;

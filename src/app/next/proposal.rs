@@ -1,5 +1,6 @@
 //! An experiment for what a diagnosis leaves open, within what is allowed.
 
+use std::path::Path;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
@@ -12,11 +13,13 @@ use crate::case::{Case, Diagnosed, diagnose};
 use crate::diagnosis::answer::finding::Diagnosis;
 use crate::diagnosis::experiment::choice::{ChoiceSettings, Chosen, choose};
 use crate::diagnosis::experiment::information::{Open, Sensors};
-use crate::diagnosis::experiment::inseparable::{Inseparable, inseparable};
+use crate::diagnosis::experiment::inseparable::{FurtherSensor, Inseparable, inseparable};
 use crate::diagnosis::experiment::limits::{Limits, Movable};
 use crate::diagnosis::search::progress::Progress;
 use crate::diagnosis::settings::Settings;
-use crate::scenario::rig_file::RigFile;
+use crate::plant::{OperatingLimits, PlantInputs};
+use crate::quantity::listed;
+use crate::replay::LoadedCell;
 
 /// What may be moved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -28,6 +31,9 @@ pub(super) enum May {
     Solenoid,
     /// The surface, and whether there is one.
     Surface,
+    /// The arm of a cell, along the path of its recordings.
+    #[value(name = "path")]
+    Path,
 }
 
 /// What an experiment may be.
@@ -68,6 +74,7 @@ impl Allowed {
             set_pressure: may(May::SetPressure),
             solenoid: may(May::Solenoid),
             surface: may(May::Surface),
+            path: may(May::Path),
         }
     }
 
@@ -88,6 +95,8 @@ pub(super) struct Proposal {
     pub sensors: Sensors,
     pub limits: Limits,
     pub chosen: Chosen,
+    /// What the chosen one does, as the simulator takes it.
+    pub inputs: PlantInputs,
     /// Pairs of explanations that it leaves open.
     pub inseparable: Vec<Inseparable>,
 }
@@ -100,8 +109,7 @@ impl Proposal {
         (allowed, seed, force): (&Allowed, u64, Option<f64>),
         observer: &mut dyn FnMut(usize, usize),
     ) -> Result<Self, AppError> {
-        let rig = bench_rig(case)?;
-        let mut stated = rig.limits;
+        let mut stated = stated_limits(case)?;
         stated.force = force.or(stated.force);
         let open = diagnosis.open();
         let sensors = diagnosis.sensors();
@@ -109,7 +117,7 @@ impl Proposal {
             &diagnosis.evidence,
             &stated,
             allowed.movable(),
-            allowed.time.as_secs_f64(),
+            (allowed.time.as_secs_f64(), case.arm_reach()),
         )
         .map_err(NextError::Limits)?;
         let settings = allowed.settings(seed);
@@ -120,6 +128,7 @@ impl Proposal {
         Ok(Self {
             none_of_these: diagnosis.none_of_these(),
             inseparable: inseparable(&open, (&sensors, odds), &inputs),
+            inputs,
             open,
             sensors,
             limits,
@@ -127,17 +136,31 @@ impl Proposal {
         })
     }
 
-    /// A sentence on each pair that it leaves open.
+    /// A sentence on the explanations that it leaves open, for each sensor that would tell some of them apart.
     pub(super) fn left_open(&self) -> Vec<String> {
-        let words = |own: &Inseparable| {
-            let [one, other] = own.places.map(|place| &self.open[place].name);
-            let by = match own.sensor {
-                Some(sensor) => format!("a sensor of {} would tell them apart", sensor.words()),
-                None => "nor would a sensor of a channel that is missing, or of the pressure in a chamber".to_owned(),
-            };
-            format!("{one} and {other} would still be open after it; {by}.")
+        let mut groups: Vec<(Option<FurtherSensor>, Vec<usize>)> = Vec::new();
+        for Inseparable { places, sensor } in &self.inseparable {
+            match groups.iter_mut().find(|(own, _)| own == sensor) {
+                Some((_, all)) => all.extend(places),
+                None => groups.push((*sensor, places.to_vec())),
+            }
+        }
+        let words = |(sensor, mut places): (Option<FurtherSensor>, Vec<usize>)| {
+            places.sort_unstable();
+            places.dedup();
+            let names = places.iter().map(|place| self.open[*place].name.clone());
+            let names = listed(&names.collect::<Vec<_>>());
+            match sensor {
+                Some(sensor) => format!(
+                    "{names} would still be open after it; a sensor of {} would tell them apart.",
+                    sensor.words()
+                ),
+                None => format!(
+                    "{names} would still be open after it; nor would a sensor of a channel that is missing, or of the pressure in a chamber, tell them apart."
+                ),
+            }
         };
-        self.inseparable.iter().map(words).collect()
+        groups.into_iter().map(words).collect()
     }
 
     /// Probability that is expected of the true explanation afterwards, if it is one of these [1]; none where only one is open, which a recording may deny.
@@ -152,10 +175,22 @@ impl Proposal {
     }
 }
 
-/// The rig file of a bench.
-pub(super) fn bench_rig(case: &Case) -> Result<&RigFile, NextError> {
-    case.bench_rig().ok_or_else(|| NextError::NoBench {
-        case: case.name.clone(),
+/// Limits that the file of a bench or a cell states.
+pub(super) fn stated_limits(case: &Case) -> Result<OperatingLimits, NextError> {
+    let case_name = || case.name.clone();
+    let stated = case.operating_limits();
+    let stated = stated.ok_or_else(|| NextError::NoBench { case: case_name() })?;
+    match case.cell().is_some() && case.arm_reach().is_none() {
+        true => Err(NextError::NoCourse { case: case_name() }),
+        false => Ok(stated),
+    }
+}
+
+/// A case of a bench, or of a cell by its recordings alone.
+pub(super) fn case_in(folder: &Path, cell: Option<&LoadedCell>) -> Result<Case, AppError> {
+    Ok(match cell {
+        Some(cell) => Case::of_cell(folder, cell)?,
+        None => Case::from_folder(folder)?,
     })
 }
 

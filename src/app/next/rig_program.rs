@@ -6,10 +6,13 @@ use std::time::{Duration, Instant};
 
 use super::super::error::AppError;
 use super::error::NextError;
-use super::files::COLUMNS;
-use crate::diagnosis::recordings::recorded::{COLUMNS as MEASURED, recorded_of};
-use crate::plant::{DeviceParts, PlantInputs};
+use super::files::InputColumn;
+use crate::case::read_rig;
+use crate::diagnosis::recordings::recorded::{COLUMNS as MEASURED, hold, recorded_of};
+use crate::plant::DeviceParts;
 use crate::recording::Recording;
+use crate::recording::csv::{CellRecording, read_cell_csv};
+use crate::replay::LoadedCell;
 
 /// Between two looks at whether it is done.
 const LOOK: Duration = Duration::from_millis(20);
@@ -41,8 +44,12 @@ impl RigProgram {
         self.program.display().to_string()
     }
 
-    /// Carries inputs out.
-    pub(super) fn call(&self, inputs: &Path, recording: &Path) -> Result<Reply, NextError> {
+    /// Carries inputs out; `asked` are their columns.
+    pub(super) fn call(
+        &self,
+        (inputs, asked): (&Path, &[InputColumn]),
+        recording: &Path,
+    ) -> Result<Reply, NextError> {
         let errors = recording.with_extension("stderr.txt");
         let cannot = |cause: std::io::Error| NextError::NoProgram {
             program: self.name(),
@@ -72,13 +79,13 @@ impl RigProgram {
             }
             std::thread::sleep(LOOK);
         };
-        self.reply(status, &errors, recording)
+        self.reply(status, (&errors, asked), recording)
     }
 
     fn reply(
         &self,
         status: ExitStatus,
-        errors: &Path,
+        (errors, asked): (&Path, &[InputColumn]),
         recording: &Path,
     ) -> Result<Reply, NextError> {
         let text = crate::file::read(errors).unwrap_or_default();
@@ -95,7 +102,7 @@ impl RigProgram {
                 file: recording.display().to_string(),
                 columns: ["time_s"]
                     .into_iter()
-                    .chain(COLUMNS)
+                    .chain(asked.iter().map(|own| own.name.as_str()))
                     .chain(MEASURED)
                     .collect::<Vec<_>>()
                     .join(", "),
@@ -120,41 +127,63 @@ impl RigProgram {
     }
 }
 
-/// Checks that a recording was made with the inputs that were asked for, as values that are held between samples. Its clock is its own: it may differ by an offset and a
-/// rate, which are for the diagnosis to find.
+/// What a recording says of the inputs that it was made with: its times [s], and the columns in the order of those that were asked for.
+pub(super) struct Returned {
+    time: Vec<f64>,
+    columns: Vec<Vec<f64>>,
+}
+
+impl Returned {
+    /// Reads the recording of a bench.
+    pub(super) fn of_bench(file: &Path) -> Result<Self, AppError> {
+        Self::of_recording(file, &read_rig(DeviceParts::Whole, file)?)
+    }
+
+    fn of_recording(file: &Path, recording: &Recording) -> Result<Self, AppError> {
+        let name = file.display().to_string();
+        let inputs = recorded_of(DeviceParts::Whole, &name, recording)?.inputs;
+        let valve = super::files::valve(&inputs.extends);
+        Ok(Self {
+            columns: vec![inputs.set_pressure, valve, inputs.surface],
+            time: inputs.time,
+        })
+    }
+
+    /// Reads the recording of a cell.
+    pub(super) fn of_cell(file: &Path, cell: &LoadedCell) -> Result<Self, AppError> {
+        let read = read_cell_csv(file, cell.joints.len());
+        let CellRecording {
+            time,
+            path,
+            commands,
+            mut set_pressure,
+            ..
+        } = read?;
+        hold(&mut set_pressure);
+        let columns = [path].into_iter().chain(commands).chain([set_pressure]);
+        Ok(Self {
+            columns: columns.collect(),
+            time,
+        })
+    }
+}
+
+/// Checks that a recording was made with the inputs that were asked for at times [s], as values that are held between samples. Its clock is its own: it may differ by an
+/// offset and a rate, which are for the diagnosis to find.
 pub(super) fn check_inputs(
     file: &Path,
-    recording: &Recording,
-    asked: &PlantInputs,
-) -> Result<(), AppError> {
-    let name = file.display().to_string();
-    let found = recorded_of(DeviceParts::Whole, &name, recording)?.inputs;
+    found: &Returned,
+    (times, asked): (&[f64], &[InputColumn]),
+) -> Result<(), NextError> {
     let begin = found.time.first().copied().unwrap_or_default();
-    let last = asked.time.len() - 1;
+    let last = times.len() - 1;
     let index = |time: f64| {
-        asked
-            .time
-            .partition_point(|t| *t <= time)
-            .saturating_sub(1)
-            .min(last)
+        let after = times.partition_point(|t| *t <= time);
+        after.saturating_sub(1).min(last)
     };
-    let range = |values: &[f64]| {
-        let finite = values.iter().copied().filter(|v| v.is_finite());
-        let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| {
-            [l.min(v), h.max(v)]
-        });
-        if high > low { high - low } else { high.abs() }
-    };
-    let flags =
-        |values: &[bool]| -> Vec<f64> { values.iter().map(|v| f64::from(u8::from(*v))).collect() };
-    let [asked_valve, found_valve] = [flags(&asked.extends), flags(&found.extends)];
-    let columns = [
-        (COLUMNS[0], &asked.set_pressure, &found.set_pressure, 100.0),
-        (COLUMNS[1], &asked_valve, &found_valve, 0.01),
-        (COLUMNS[2], &asked.surface, &found.surface, 2e-4),
-    ];
-    for (column, asked_values, values, least) in columns {
-        let slack = (0.01 * range(asked_values)).max(least);
+    for (column, values) in asked.iter().zip(&found.columns) {
+        let asked_values = &column.values;
+        let slack = (0.01 * range(asked_values)).max(column.slack);
         let other = |(place, value): &(usize, &f64)| {
             let time = found.time[*place] - begin;
             let reach = CLOCK[0] + CLOCK[1] * time;
@@ -176,16 +205,24 @@ pub(super) fn check_inputs(
             let (place, value) = strays[0];
             let time = found.time[place];
             return Err(NextError::OtherInputs {
-                file: name,
+                file: file.display().to_string(),
                 time,
-                column,
+                column: column.name.clone(),
                 found: shown(*value),
                 asked: shown(asked_values[index(time - begin)]),
-            }
-            .into());
+            });
         }
     }
     Ok(())
+}
+
+/// Range of values; of those that are all the same, their size.
+fn range(values: &[f64]) -> f64 {
+    let finite = values.iter().copied().filter(|v| v.is_finite());
+    let [low, high] = finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| {
+        [l.min(v), h.max(v)]
+    });
+    if high > low { high - low } else { high.abs() }
 }
 
 fn shown(value: f64) -> String {
@@ -198,7 +235,7 @@ fn shown(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plant::InitialState;
+    use crate::plant::{InitialState, PlantInputs};
     use crate::recording::{RecordedChannel, Unit, schema};
 
     /// Stairs, a reversal and a surface that moves, as they were asked for.
@@ -246,7 +283,26 @@ mod tests {
     }
 
     fn checked(recording: &Recording) -> Result<(), String> {
-        let checked = check_inputs(Path::new("out.csv"), recording, &asked());
+        let file = Path::new("out.csv");
+        let PlantInputs {
+            time,
+            set_pressure,
+            extends,
+            surface,
+            ..
+        } = asked();
+        let column = |name: &str, values, slack| InputColumn {
+            name: name.to_owned(),
+            values,
+            slack,
+        };
+        let columns = [
+            column("set_pressure_pa", set_pressure, 100.0),
+            column("solenoid", super::super::files::valve(&extends), 0.01),
+            column("surface_m", surface, 2e-4),
+        ];
+        let returned = Returned::of_recording(file, recording).unwrap();
+        let checked = check_inputs(file, &returned, (&time, &columns));
         checked.map_err(|error| error.to_string())
     }
 

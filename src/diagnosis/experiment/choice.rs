@@ -15,9 +15,9 @@ use rayon::prelude::*;
 
 use super::information::{Expected, Open, Outlook, Sensors, entropy, shares_of};
 use super::limits::{LimitError, Limits};
-use super::programme::Programme;
+use super::programme::{Part, Programme};
 use crate::diagnosis::fit::covariance::inverse;
-use crate::plant::{PlantParameters, simulate};
+use crate::plant::{PlantInputs, PlantParameters, simulate};
 
 /// Weight of a number's information while it is open which explanation is right [1].
 const BESIDE: f64 = 0.02;
@@ -27,6 +27,9 @@ const OPEN: f64 = 0.1;
 const DRAWS: usize = 20;
 /// Share of the programmes that are drawn, the others being changed ones [1].
 const DRAWN: f64 = 0.35;
+/// Times that a programme which presses too hard is made gentler, and by how much more than its force asks for [1].
+const GENTLER: usize = 3;
+const MARGIN: f64 = 0.97;
 /// Programmes that are changed further.
 const KEPT: usize = 6;
 
@@ -81,69 +84,107 @@ pub fn choose(
         .flat_map(|own| draws(own, &mut random))
         .collect();
     let is_open = entropy(&shares_of(open)) > OPEN;
-    let weight = if is_open { BESIDE } else { 1.0 };
+    let mut choice = Choice {
+        of: (open, sensors, limits),
+        plants,
+        is_open,
+        weight: if is_open { BESIDE } else { 1.0 },
+        preparation: settings.preparation,
+        kept: Vec::new(),
+        least: f64::INFINITY,
+        most_on_numbers: 0.0,
+    };
     let drawn = (DRAWN * settings.programmes as f64).ceil() as usize;
-    let mut kept: Vec<Chosen> = Vec::new();
-    let mut least = f64::INFINITY;
-    let mut most_on_numbers = 0.0;
     for index in 0..settings.programmes {
         observer(index, settings.programmes);
-        let programme = match kept.is_empty() || index < drawn {
+        let kept = &choice.kept;
+        let mut programme = match kept.is_empty() || index < drawn {
             true => Programme::drawn(limits, &mut random),
             false => {
                 let which = index % kept.len();
                 kept[which].programme.changed(limits, &mut random)
             }
         };
-        let inputs = programme.inputs(limits);
-        let outlook = Outlook::of(open, sensors, &inputs);
-        let per_second = |gained: f64| gained / (programme.duration() + settings.preparation);
-        let full = kept.len() == KEPT;
-        // Derivatives are most of the work: of what could not be among the best they are not asked for.
-        let most = outlook.most_on_which() + weight * most_on_numbers;
-        if full && is_open && per_second(most) <= kept[KEPT - 1].value {
-            continue;
+        for _ in 0..=GENTLER {
+            let Some(force) = choice
+                .look(&programme)
+                .filter(|_| limits.movable.set_pressure)
+            else {
+                break;
+            };
+            programme = programme.gentler(MARGIN * limits.force / force);
         }
-        let expected = outlook.expected();
-        most_on_numbers = expected.how_much.max(most_on_numbers);
-        let value = per_second(expected.which + weight * expected.how_much);
-        if full && kept[KEPT - 1].value >= value {
-            continue;
-        }
-        // Of a programme that would be kept, whether it may be done.
-        let force = force_of(&plants, &programme, limits);
-        least = least.min(force);
-        if force > limits.force {
-            continue;
-        }
-        let chosen = Chosen {
-            programme,
-            expected,
-            value,
-            force,
-        };
-        kept.push(chosen);
-        kept.sort_by(|a, b| b.value.total_cmp(&a.value));
-        kept.truncate(KEPT);
     }
     observer(settings.programmes, settings.programmes);
-    match kept.into_iter().next() {
+    match choice.kept.into_iter().next() {
         Some(best) => Ok(best),
         None => Err(LimitError::Force {
             most: limits.force,
-            least,
+            least: choice.least,
         }),
     }
 }
 
-/// Largest force on the part of a programme [N].
-fn force_of(plants: &[PlantParameters], programme: &Programme, limits: &Limits) -> f64 {
-    let inputs = programme.inputs(limits);
-    if programme.surface.is_none() {
-        return 0.0;
+/// A choice while it is made.
+struct Choice<'a> {
+    of: (&'a [Open], &'a Sensors, &'a Limits),
+    /// Draws of the numbers of every explanation.
+    plants: Vec<PlantParameters>,
+    is_open: bool,
+    /// Weight of a number's information [1].
+    weight: f64,
+    preparation: f64,
+    /// Programmes that are worth most, the best first.
+    kept: Vec<Chosen>,
+    /// Least of the largest forces on the part [N].
+    least: f64,
+    most_on_numbers: f64,
+}
+
+impl Choice<'_> {
+    /// Keeps a programme where it is worth it; gives the force on the part where only that forbids it [N].
+    fn look(&mut self, programme: &Programme) -> Option<f64> {
+        let (open, sensors, limits) = self.of;
+        let inputs = programme.inputs(limits);
+        let outlook = Outlook::of(open, sensors, &inputs);
+        let time = programme.duration() + self.preparation;
+        let full = self.kept.len() == KEPT;
+        // Derivatives are most of the work: of what could not be among the best they are not asked for.
+        let most = outlook.most_on_which() + self.weight * self.most_on_numbers;
+        if full && self.is_open && most / time <= self.kept[KEPT - 1].value {
+            return None;
+        }
+        let expected = outlook.expected();
+        self.most_on_numbers = expected.how_much.max(self.most_on_numbers);
+        let value = (expected.which + self.weight * expected.how_much) / time;
+        if full && self.kept[KEPT - 1].value >= value {
+            return None;
+        }
+        // Of a programme that would be kept, whether it may be done.
+        let force = match &programme.part {
+            Part::None => 0.0,
+            Part::Surface(_) | Part::Edge(_) => force_of(&self.plants, &inputs),
+        };
+        self.least = self.least.min(force);
+        if force > limits.force {
+            return Some(force);
+        }
+        self.kept.push(Chosen {
+            programme: programme.clone(),
+            expected,
+            value,
+            force,
+        });
+        self.kept.sort_by(|a, b| b.value.total_cmp(&a.value));
+        self.kept.truncate(KEPT);
+        None
     }
+}
+
+/// Largest force on the part by inputs [N].
+fn force_of(plants: &[PlantParameters], inputs: &PlantInputs) -> f64 {
     let forces = plants.par_iter().map(|plant| {
-        let trajectory = simulate(plant, &inputs);
+        let trajectory = simulate(plant, inputs);
         let force = trajectory.truth.contact_force.iter().copied();
         force.fold(0.0, f64::max)
     });

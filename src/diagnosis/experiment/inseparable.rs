@@ -6,7 +6,9 @@ use crate::plant::{CHANNELS, Channel, PlantInputs};
 
 /// Probability of another explanation, were one the truth, from which the two stay open [1].
 const OPEN: f64 = 0.1;
-/// The same with a sensor more, up to which it tells them apart [1].
+/// Probability of an explanation from which it is worth a word that it stays [1].
+const LIKELY: f64 = 0.01;
+/// Probability of another explanation, were one the truth, with a sensor more, up to which it tells them apart [1].
 const APART: f64 = 0.05;
 /// Noise of usual sensors, in the order of [`CHANNELS`]: of a pressure [Pa], a stroke [m], a force [N], an acceleration [m/s2].
 const USUAL: [f64; CHANNELS.len()] = [400.0, 3e-5, 1.0, 0.15];
@@ -78,6 +80,8 @@ pub fn inseparable(
         of(one, other).max(of(other, one)) > limit
     };
     let pairs = (1..open.len()).flat_map(|other| (0..other).map(move |one| [one, other]));
+    let likely = |pair: &[usize; 2]| pair.iter().all(|place| open[*place].probability > LIKELY);
+    let pairs = pairs.filter(likely);
     let stuck: Vec<[usize; 2]> = pairs.filter(|pair| stay(odds, *pair, OPEN)).collect();
     if stuck.is_empty() {
         return Vec::new();

@@ -1,5 +1,6 @@
 //! How far an experiment may move a rig, and by what.
 
+use super::ride::ArmReach;
 use crate::diagnosis::recordings::evidence::Evidence;
 use crate::diagnosis::recordings::recorded::LEAST_SAMPLES;
 use crate::plant::{Channel, OperatingLimits};
@@ -14,6 +15,8 @@ pub struct Movable {
     pub solenoid: bool,
     /// The surface, or whether there is one at all.
     pub surface: bool,
+    /// The arm, along the path of its recordings.
+    pub path: bool,
 }
 
 impl Movable {
@@ -22,11 +25,12 @@ impl Movable {
         set_pressure: true,
         solenoid: true,
         surface: true,
+        path: true,
     };
 }
 
 /// Limits of an experiment.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Limits {
     /// What may be moved.
     pub movable: Movable,
@@ -48,6 +52,8 @@ pub struct Limits {
     pub force: f64,
     /// Longest recording [s].
     pub duration: f64,
+    /// How far the arm may be moved; none on a bench.
+    pub arm: Option<ArmReach>,
 }
 
 /// Limits that leave nothing to be done.
@@ -113,9 +119,9 @@ impl Limits {
         evidence: &Evidence,
         stated: &OperatingLimits,
         movable: Movable,
-        duration: f64,
+        (duration, arm): (f64, Option<ArmReach>),
     ) -> Result<Self, LimitError> {
-        let seen = Seen::of(evidence);
+        let seen = Seen::of(evidence, arm.is_some());
         let least = stated.surface[0].or(seen.surface.map(|s| s[0]));
         let most = stated.surface[1].or(seen.surface.map(|s| s[1]));
         let surface = least.zip(most).map(|(least, most)| [least, most]);
@@ -154,6 +160,7 @@ impl Limits {
             },
             force: stated.force.unwrap_or(seen.force),
             duration: stated.duration.map_or(duration, |most| duration.min(most)),
+            arm,
         };
         limits.check()?;
         Ok(limits)
@@ -170,7 +177,8 @@ impl Limits {
         let [least, most] = self.set_pressure;
         let pressure_moves = self.movable.set_pressure && most > least;
         let surface_moves = self.movable.surface && self.surface.is_some_and(|[a, b]| b > a);
-        if pressure_moves || self.retracts || surface_moves {
+        let arm_moves = self.movable.path && self.arm.is_some();
+        if pressure_moves || self.retracts || surface_moves || arm_moves {
             return Ok(());
         }
         let mut why = Vec::new();
@@ -180,8 +188,12 @@ impl Limits {
                 false => "the set pressure is to be left alone".to_owned(),
             });
         }
-        why.push("the valve never retracts, or is to be left alone".to_owned());
-        why.push("the surface stands still, or is to be left alone".to_owned());
+        if self.arm.is_some() {
+            why.push("the arm is to be left alone".to_owned());
+        } else {
+            why.push("the valve never retracts, or is to be left alone".to_owned());
+            why.push("the surface stands still, or is to be left alone".to_owned());
+        }
         Err(LimitError::NothingMoves {
             what: why.join(", "),
         })
@@ -202,13 +214,14 @@ struct Seen {
 }
 
 impl Seen {
-    fn of(evidence: &Evidence) -> Self {
+    fn of(evidence: &Evidence, is_cell: bool) -> Self {
         let inputs = || evidence.recordings.iter().map(|own| &own.inputs);
         let pressures: Vec<f64> = inputs()
             .flat_map(|i| i.set_pressure.iter().copied())
             .collect();
         let surfaces = inputs().flat_map(|i| i.surface.iter().copied());
-        let surfaces: Vec<f64> = surfaces.filter(|x| x.is_finite()).collect();
+        // Of a cell it is where the edge is along the stroke, which nobody sets.
+        let surfaces: Vec<f64> = surfaces.filter(|x| x.is_finite() && !is_cell).collect();
         let most = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, f64::max);
         let rates = |pick: fn(&crate::plant::PlantInputs) -> &Vec<f64>| {
             most(&mut inputs().flat_map(move |i| {
@@ -261,6 +274,7 @@ impl Limits {
             without_workpiece: true,
             force: 1e3,
             duration: 9.0,
+            arm: None,
         }
     }
 }
@@ -286,7 +300,12 @@ mod tests {
 
     #[test]
     fn what_is_not_stated_is_as_far_as_the_recordings_went() {
-        let limits = Limits::new(&recorded(), &OperatingLimits::default(), Movable::ALL, 8.0);
+        let limits = Limits::new(
+            &recorded(),
+            &OperatingLimits::default(),
+            Movable::ALL,
+            (8.0, None),
+        );
         let limits = limits.unwrap();
         assert_eq!(limits.set_pressure, [0.0, 2e5]);
         // 400 Pa every 4 ms; 4 mm at 0.1 rad every 4 ms.
@@ -319,8 +338,9 @@ mod tests {
             without_workpiece: Some(true),
             force: Some(12.0),
             duration: Some(3.0),
+            joint_motion: [None; 2],
         };
-        let limits = Limits::new(&recorded(), &stated, Movable::ALL, 8.0).unwrap();
+        let limits = Limits::new(&recorded(), &stated, Movable::ALL, (8.0, None)).unwrap();
         assert_eq!(limits.set_pressure, [0.0, 5e4]);
         assert_eq!(limits.set_pressure_rate, 1e4);
         assert_eq!(limits.surface.unwrap()[0], 0.018);
@@ -331,18 +351,19 @@ mod tests {
             set_pressure,
             solenoid,
             surface,
+            path: false,
         };
         let valve = Limits::new(
             &recorded(),
             &OperatingLimits::default(),
             only(false, true, false),
-            8.0,
+            (8.0, None),
         );
         let valve = valve.unwrap();
         assert_eq!(valve.set_pressure[0], valve.set_pressure[1]);
         assert_eq!(valve.surface_motion, [0.0; 2]);
         assert!(!valve.without_workpiece);
-        let nothing = Limits::new(&recorded(), &stated, only(false, true, false), 8.0);
+        let nothing = Limits::new(&recorded(), &stated, only(false, true, false), (8.0, None));
         let error = nothing.unwrap_err().to_string();
         assert!(error.contains("nothing may be moved"), "{error}");
     }
@@ -353,7 +374,7 @@ mod tests {
             surface: [Some(0.03), None],
             ..OperatingLimits::default()
         };
-        let error = Limits::new(&recorded(), &stated, Movable::ALL, 8.0).unwrap_err();
+        let error = Limits::new(&recorded(), &stated, Movable::ALL, (8.0, None)).unwrap_err();
         let error = error.to_string();
         assert!(
             error.contains("surface_least_m") && error.contains("0.03"),

@@ -94,9 +94,21 @@ impl Diagnosis {
                 variance[place] = variance[place].max(sigmas * sigmas);
             }
         }
+        // A channel that no recording has is not there, whatever its noise would be.
+        let mut noise = self.evidence.noise;
+        for channel in CHANNELS {
+            let mut readings = self
+                .evidence
+                .recordings
+                .iter()
+                .flat_map(|own| &own.readings[channel as usize]);
+            if !readings.any(|value| value.is_finite()) {
+                noise[channel as usize] = f64::INFINITY;
+            }
+        }
         Sensors {
             without: self.baseline.plant.clone(),
-            noise: self.evidence.noise,
+            noise,
             variance,
             probe: None,
         }

@@ -6,13 +6,14 @@
 //! ```
 //!
 //! p set pressure, s position of the surface along the stroke, s0 where it stands, a peak to peak, f frequency, t0 start of its motion. A staircase, a ramp,
-//! a dwell, reversals of the valve and a ride are each one of these. A bench's scenario holds the same, number for number.
+//! a dwell, reversals of the valve and a ride are each one of these. A bench's scenario holds the same, number for number. In a cell the arm rides instead ([`Ride`]).
 
 use std::f64::consts::{PI, TAU};
 
 use rand::Rng;
 
 use super::limits::Limits;
+use super::ride::{ArmCommands, ArmReach, Ride};
 use crate::plant::{InitialState, PlantInputs};
 
 /// Time for which a set pressure is held [s].
@@ -48,13 +49,24 @@ pub struct Surface {
     pub start: f64,
 }
 
+/// What the tool is pressed against.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Part {
+    /// Nothing: there is no workpiece.
+    None,
+    /// The surface of a bench.
+    Surface(Surface),
+    /// The edge of a cell's part, along which the arm rides.
+    Edge(Ride),
+}
+
 /// A programme.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Programme {
     /// Set pressure and valve.
     pub segments: Vec<Segment>,
-    /// The surface; none without a workpiece.
-    pub surface: Option<Surface>,
+    /// What the tool is pressed against.
+    pub part: Part,
 }
 
 impl Surface {
@@ -100,6 +112,19 @@ impl Surface {
     }
 }
 
+impl Part {
+    fn drawn(limits: &Limits, random: &mut impl Rng) -> Self {
+        if let Some(reach) = &limits.arm {
+            return Self::Edge(Ride::drawn(reach, limits.movable.path, random));
+        }
+        (limits.surface)
+            .filter(|_| !limits.without_workpiece || random.random_bool(0.75))
+            .map_or(Self::None, |range| {
+                Self::Surface(Surface::drawn(limits, range, random))
+            })
+    }
+}
+
 impl Segment {
     fn drawn(limits: &Limits, random: &mut impl Rng) -> Self {
         let pressure = |random: &mut _| between(limits.set_pressure, random);
@@ -123,9 +148,7 @@ impl Programme {
         let count = random.random_range(1..=MOST_SEGMENTS);
         let mut drawn = Self {
             segments: (0..count).map(|_| Segment::drawn(limits, random)).collect(),
-            surface: (limits.surface)
-                .filter(|_| !limits.without_workpiece || random.random_bool(0.75))
-                .map(|range| Surface::drawn(limits, range, random)),
+            part: Part::drawn(limits, random),
         };
         drawn.within(limits);
         drawn
@@ -161,8 +184,8 @@ impl Programme {
             }
             4 if limits.retracts => self.segments[at].extends = !self.segments[at].extends,
             5 => self.segments = [self.segments.clone(), self.segments.clone()].concat(),
-            _ => match (&mut self.surface, limits.surface) {
-                (Some(surface), Some(range)) => {
+            _ => match (&mut self.part, limits.surface, &limits.arm) {
+                (Part::Surface(surface), Some(range), _) => {
                     let drawn = Surface::drawn(limits, range, random);
                     match random.random_range(0..4) {
                         0 => *surface = drawn,
@@ -171,6 +194,7 @@ impl Programme {
                         _ => surface.peak_to_peak = drawn.peak_to_peak,
                     }
                 }
+                (Part::Edge(ride), _, Some(reach)) => ride.change(reach, random),
                 _ => self.segments[at] = Segment::drawn(limits, random),
             },
         }
@@ -197,9 +221,40 @@ impl Programme {
         {
             last.duration += (missing / HOLD).round() * HOLD;
         }
-        if let (Some(surface), Some(range)) = (&mut self.surface, limits.surface) {
-            surface.within(limits, range);
+        let duration = self.duration();
+        match (&mut self.part, limits.surface, &limits.arm) {
+            (Part::Surface(surface), Some(range), _) => surface.within(limits, range),
+            (Part::Edge(ride), _, Some(reach)) => ride.within(reach, duration),
+            _ => (),
         }
+    }
+
+    /// The surface of a bench; none of a cell, or without a workpiece.
+    #[must_use]
+    pub fn surface(&self) -> Option<&Surface> {
+        match &self.part {
+            Part::Surface(surface) => Some(surface),
+            Part::None | Part::Edge(_) => None,
+        }
+    }
+
+    /// The arm's ride, with what it may do; none on a bench.
+    #[must_use]
+    pub fn ride<'a>(&'a self, limits: &'a Limits) -> Option<(&'a Ride, &'a ArmReach)> {
+        match (&self.part, &limits.arm) {
+            (Part::Edge(ride), Some(reach)) => Some((ride, reach)),
+            _ => None,
+        }
+    }
+
+    /// The same with so much of its set pressures [1].
+    #[must_use]
+    pub fn gentler(&self, share: f64) -> Self {
+        let mut other = self.clone();
+        for segment in &mut other.segments {
+            segment.set_pressure = segment.set_pressure.map(|p| p * share);
+        }
+        other
     }
 
     /// Its length [s].
@@ -232,20 +287,40 @@ impl Programme {
         found
     }
 
-    /// As the simulator takes it.
-    #[must_use]
-    pub fn inputs(&self, limits: &Limits) -> PlantInputs {
+    /// Times of its samples [s], with set pressure [Pa gauge] and whether the valve extends.
+    fn sampled(&self, limits: &Limits) -> (Vec<f64>, Vec<f64>, Vec<bool>) {
         let commands = self.commands(limits);
         let duration = commands.len() as f64 * HOLD;
         let count = (duration / limits.step + 1e-9).floor() as usize + 1;
         let time: Vec<f64> = (0..count).map(|i| i as f64 * limits.step).collect();
         let at = |t: &f64| commands[((t / HOLD + 1e-9) as usize).min(commands.len() - 1)];
+        let held: Vec<(f64, bool)> = time.iter().map(at).collect();
+        let (set_pressure, extends) = held.into_iter().unzip();
+        (time, set_pressure, extends)
+    }
+
+    /// What the arm of a cell is commanded; none on a bench.
+    #[must_use]
+    pub fn arm_commands(&self, limits: &Limits) -> Option<ArmCommands> {
+        let (ride, reach) = self.ride(limits)?;
+        let (time, set_pressure, _) = self.sampled(limits);
+        Some(ride.commands(reach, time, set_pressure))
+    }
+
+    /// As the simulator takes it.
+    #[must_use]
+    pub fn inputs(&self, limits: &Limits) -> PlantInputs {
+        if let (Some(commands), Some(reach)) = (self.arm_commands(limits), &limits.arm) {
+            return reach.inputs(commands);
+        }
+        let (time, set_pressure, extends) = self.sampled(limits);
+        let surface = self.surface();
         PlantInputs {
-            set_pressure: time.iter().map(|t| at(t).0).collect(),
-            extends: time.iter().map(|t| at(t).1).collect(),
+            set_pressure,
+            extends,
             surface: time
                 .iter()
-                .map(|t| self.surface.as_ref().map_or(f64::NAN, |own| own.at(*t)))
+                .map(|t| surface.map_or(f64::NAN, |own| own.at(*t)))
                 .collect(),
             cell: None,
             motion: None,
@@ -257,27 +332,29 @@ impl Programme {
 
     /// What is to be done, a sentence each.
     #[must_use]
-    pub fn instructions(&self) -> Vec<String> {
+    pub fn instructions(&self, limits: &Limits) -> Vec<String> {
         let bar = |pressure: f64| format!("{:.2}", pressure * 1e-5);
         let begin = "Begin with the slide retracted, at rest, and no set pressure.".to_owned();
-        let surface = match &self.surface {
-            None => "Take the workpiece away.".to_owned(),
-            Some(own) if own.peak_to_peak < 1e-6 => {
-                format!(
+        let of_part = match (&self.part, &limits.arm) {
+            (Part::Edge(ride), Some(reach)) => ride.instructions(reach),
+            (Part::Surface(own), _) if own.peak_to_peak < 1e-6 => {
+                vec![format!(
                     "Fix the surface at {:.1} mm of the stroke.",
                     own.position * 1e3
-                )
+                )]
             }
-            Some(own) => format!(
+            (Part::Surface(own), _) => vec![format!(
                 "Put the surface at {:.1} mm of the stroke and from {:.2} s on move it towards the device and back, {:.2} mm peak to peak at {:.2} Hz ({:.0} mm/s at most).",
                 own.position * 1e3,
                 own.start,
                 own.peak_to_peak * 1e3,
                 own.frequency,
                 own.peak_to_peak * PI * own.frequency * 1e3
-            ),
+            )],
+            (Part::None | Part::Edge(_), _) => vec!["Take the workpiece away.".to_owned()],
         };
-        let mut lines = vec![begin, surface];
+        let mut lines: Vec<String> = [begin].into_iter().chain(of_part).collect();
+        let has_valve = limits.arm.is_none();
         let mut from = 0.0;
         for own in &self.segments {
             let [start, end] = own.set_pressure;
@@ -285,9 +362,13 @@ impl Programme {
                 true => format!("{} bar", bar(start)),
                 false => format!("from {} to {} bar", bar(start), bar(end)),
             };
-            let valve = if own.extends { "extended" } else { "retracted" };
+            let valve = match (has_valve, own.extends) {
+                (false, _) => "",
+                (true, true) => ", valve extended",
+                (true, false) => ", valve retracted",
+            };
             lines.push(format!(
-                "{from:.2} s to {:.2} s: set pressure {pressure}, valve {valve}.",
+                "{from:.2} s to {:.2} s: set pressure {pressure}{valve}.",
                 from + own.duration
             ));
             from += own.duration;
@@ -350,7 +431,7 @@ mod tests {
     fn instructions_cover_the_whole_of_it() {
         let limits = Limits::of_tests();
         let programme = Programme::drawn(&limits, &mut ChaCha8Rng::seed_from_u64(2));
-        let lines = programme.instructions();
+        let lines = programme.instructions(&limits);
         assert_eq!(lines.len(), 2 + programme.segments.len());
         let end = format!("{:.2} s:", programme.duration());
         assert!(lines[lines.len() - 1].contains(&end), "{lines:?}");

@@ -322,6 +322,7 @@ pub(super) fn limits(
         without_workpiece: keys.without_workpiece,
         force: keys.force,
         duration: keys.duration,
+        joint_motion: [None; 2],
     })
 }
 

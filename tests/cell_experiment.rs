@@ -1,0 +1,220 @@
+//! `idc next` and `idc investigate` of a cell: the arm rides along the path of its recordings anew, as far and as fast as they went.
+
+use std::path::Path;
+use std::time::Duration;
+
+use idc_cell::plant::{PlantParameters, simulate};
+use idc_cell::recording::csv::read_cell_csv;
+use idc_cell::replay::LoadedCell;
+use idc_cell::scenario::load_recorded_cell;
+
+use crate::next_experiment::rig;
+use crate::program::Bench;
+use crate::recorded_cell::{CELL, Commands, PROGRAMS, carried_out, inputs, record, text};
+
+/// A cell with an encoder that is off, and the recording of one ride.
+fn begun(limits: &str) -> (Bench, LoadedCell, PlantParameters) {
+    let bench = Bench::new("plate_edge_ideal");
+    bench.write("cell.toml", format!("{CELL}{limits}"));
+    let cell = LoadedCell::new(load_recorded_cell(&bench.path("cell.toml")).unwrap()).unwrap();
+    let mut planted = cell.plant();
+    planted.cell.encoder_offset[2] = 0.0003;
+    record(&cell, &planted, &PROGRAMS[0], &bench.path("rides"));
+    (bench, cell, planted)
+}
+
+/// Commands as a file has them.
+fn commands(file: &Path, cell: &LoadedCell) -> Commands {
+    let read = read_cell_csv(file, cell.joints.len()).unwrap();
+    Commands {
+        time: read.time,
+        path: read.path,
+        joints: read.commands,
+        set_pressure: read.set_pressure,
+    }
+}
+
+/// Largest speed [rad/s] and acceleration [rad/s2] of a joint, over 20 ms.
+fn motion(time: &[f64], joint: &[f64]) -> [f64; 2] {
+    let step = time[1] - time[0];
+    let apart = (0.02 / step).round() as usize;
+    let window = apart as f64 * step;
+    let triples =
+        (apart..joint.len() - apart).map(|at| [joint[at - apart], joint[at], joint[at + apart]]);
+    triples.fold([0.0; 2], |[speed, acceleration], [a, b, c]| {
+        [
+            f64::max(speed, (c - a).abs() / (2.0 * window)),
+            f64::max(acceleration, (c - 2.0 * b + a).abs() / (window * window)),
+        ]
+    })
+}
+
+/// By the samples of what is asked for: every posture is one of the recording, no joint is faster than there, and the cell as it truly is keeps the force.
+#[test]
+fn an_experiment_of_a_cell_stays_on_the_path_of_its_recordings() {
+    let limits = "\n[limits]\nforce_n = 300.0\nset_pressure_pa = 110000.0\nduration_s = 6\n";
+    let (bench, cell, planted) = begun(limits);
+    let words = [
+        "next",
+        "rides",
+        "--scenario",
+        "cell.toml",
+        "--out",
+        "next",
+        "--programmes",
+        "16",
+        "--quiet",
+    ];
+    let done = bench.idc(&words, &[]);
+    assert_eq!((done.code, done.out.as_str()), (0, ""), "{}", done.err);
+    assert_eq!(
+        bench.names_in("next"),
+        [
+            "cell.toml",
+            "expected.svg",
+            "inputs.csv",
+            "instructions.txt",
+            "next.json",
+            "report.html"
+        ]
+    );
+    let asked = commands(&bench.path("next/inputs.csv"), &cell);
+    let (ride, _) = inputs(&cell, &planted, &PROGRAMS[0]);
+    assert!(asked.time[asked.time.len() - 1] <= 6.0);
+    for pressure in &asked.set_pressure {
+        assert!((0.0..=110_000.0).contains(pressure), "{pressure}");
+    }
+    let mut moved = 0.0f64;
+    for (asked_joint, joint) in asked.joints.iter().zip(&ride.joints) {
+        let [speed, acceleration] = motion(&asked.time, asked_joint);
+        let most = motion(&ride.time, joint);
+        assert!(speed <= 1.02 * most[0] + 1e-6, "{speed} {most:?}");
+        assert!(
+            acceleration <= 1.1 * most[1] + 1e-3,
+            "{acceleration} {most:?}"
+        );
+        moved = moved.max(speed);
+    }
+    for at in (0..asked.time.len()).step_by(25) {
+        let away = (0..ride.time.len())
+            .map(|other| {
+                let pairs = asked.joints.iter().zip(&ride.joints);
+                pairs
+                    .map(|(a, b)| (a[at] - b[other]).abs())
+                    .fold(0.0, f64::max)
+            })
+            .fold(f64::INFINITY, f64::min);
+        assert!(away < 2e-3, "{away} at {}", asked.time[at]);
+    }
+    let force = simulate(&planted, &carried_out(&cell, &planted, &asked))
+        .truth
+        .contact_force;
+    let force = force.into_iter().fold(0.0, f64::max);
+    assert!(force <= 300.0, "{force}");
+    let instructions = std::fs::read_to_string(bench.path("next/instructions.txt")).unwrap();
+    assert!(instructions.contains("along the edge"), "{instructions}");
+    assert!(!instructions.contains("valve"), "{instructions}");
+    // Nothing that a cell has may be moved.
+    let words = [
+        "next",
+        "rides",
+        "--scenario",
+        "cell.toml",
+        "--out",
+        "none",
+        "--may",
+        "solenoid",
+        "--quiet",
+    ];
+    let refused = bench.idc(&words, &[]);
+    assert_eq!(refused.code, 2);
+    assert!(
+        refused.err.contains("the arm is to be left alone"),
+        "{}",
+        refused.err
+    );
+}
+
+/// A rig that this test is: it takes what its script is called with, and gives back what the planted cell records. On half of a ride an encoder that is off by so little
+/// is one of the joints beside it too, whose axes are parallel: that is said, and nothing is asked for that would not tell.
+#[test]
+fn a_cell_is_asked_until_nothing_would_tell_more() {
+    let (bench, cell, planted) = begun("");
+    // Of the ride its first 1.2 s.
+    let file = bench.path("rides/a.csv");
+    let whole = std::fs::read_to_string(&file).unwrap();
+    let (ride, _) = inputs(&cell, &planted, &PROGRAMS[0]);
+    let rides = ride.path.windows(2).position(|two| two[1] > two[0]);
+    let begun: Vec<&str> = whole.lines().take(rides.unwrap() + 300).collect();
+    std::fs::write(&file, begun.join("\n") + "\n").unwrap();
+    rig(
+        &bench,
+        "cp \"$1\" asked.part && mv asked.part asked.csv\nwhile [ ! -f answer.csv ]; do sleep 0.02; done\nmv answer.csv \"$2\"",
+    );
+    let words = [
+        "investigate",
+        "rides",
+        "--scenario",
+        "cell.toml",
+        "--rig",
+        "./rig.sh",
+        "--programmes",
+        "24",
+        "--time",
+        "6s",
+        "--until",
+        "0.98",
+        "--out",
+        "out",
+        "--quiet",
+    ];
+    let (asked, answer) = (bench.path("asked.csv"), bench.path("answer.csv"));
+    let done = std::thread::scope(|scope| {
+        let program = scope.spawn(|| bench.idc(&words, &[]));
+        let mut seed = 40;
+        while !program.is_finished() {
+            std::thread::sleep(Duration::from_millis(20));
+            if !asked.is_file() {
+                continue;
+            }
+            let made = commands(&asked, &cell);
+            std::fs::remove_file(&asked).unwrap();
+            let readings = simulate(&planted, &carried_out(&cell, &planted, &made)).readings;
+            seed += 1;
+            let recorded = text(
+                &made,
+                planted.cell.servo_bandwidth,
+                Some(&readings[..3]),
+                seed,
+            );
+            let part = bench.path("answer.part");
+            std::fs::write(&part, recorded).unwrap();
+            std::fs::rename(&part, &answer).unwrap();
+        }
+        program.join().unwrap()
+    });
+    assert_eq!(done.err, "");
+    let record = std::fs::read_to_string(bench.path("out/investigation.json")).unwrap();
+    let record: serde_json::Value = serde_json::from_str(&record).unwrap();
+    assert_eq!(done.code, 1, "{record:#}");
+    assert_eq!(record["stop"], "no allowed experiment would tell more");
+    let odds = record["odds"].as_array().unwrap();
+    let explanations = odds[odds.len() - 1]["explanations"].as_array().unwrap();
+    assert_eq!(
+        explanations[0]["effects"], "joint_encoder_offset (joint 3)",
+        "{record:#}"
+    );
+    let left_open = record["left_open"].to_string();
+    assert!(
+        left_open.contains("joint_encoder_offset (joint 3)"),
+        "{left_open}"
+    );
+    let asked = record["asked"].as_array().unwrap().len();
+    assert_eq!((odds.len(), asked), (2, 1), "{record:#}");
+    assert_eq!(bench.names_in("out/case"), ["a.csv", "run-1.csv"]);
+    let ride = commands(&bench.path("out/run-1/inputs.csv"), &cell);
+    assert!(
+        ride.path.windows(2).any(|two| two[0] != two[1]),
+        "{record:#}"
+    );
+}
