@@ -1,5 +1,6 @@
 //! Which effects explain what the nominal model leaves.
 
+mod alike;
 pub mod detectable;
 pub(super) mod finish;
 mod formulas;
@@ -180,6 +181,8 @@ impl Search<'_> {
         asked: &mut Vec<Vec<&'static str>>,
         observer: &mut Observer<'_>,
     ) -> (Vec<Hypothesis>, Vec<RoughFit>, ModelError) {
+        // Before what they leave is a model error, by which all of them would do.
+        self.add_alike(&mut full, scale, observer);
         let noise = rough_noise(self.evidence);
         let shows_when_held = |h: &Hypothesis| h.fit.rough - noise > scale.rough_spread();
         if (full.first()).is_some_and(|best| !shows_when_held(best) && !scale.is_adequate(best)) {

@@ -242,17 +242,29 @@ def effects_of(own):
     return " + ".join(sorted((listed + ("unlisted" if formula else "")).split(" + ")))
 
 
+# What is the same by the equations: gravity along an axis that does not turn is a constant force; flow through an orifice goes with the discharge coefficient and with
+# the root of the temperature, in the chambers' balance, alike.
+SAME = {
+    "number_off (cylinder.gravity_along_axis_m_per_s2)": "axial_force_offset",
+    "number_off (gas.temperature_k)": "number_off (valve.discharge_coefficient)",
+}
+
+
+def right_names(truth):
+    """Names of what is right: the truth's, and what is the same by the equations."""
+    names = [" + ".join(truth) if truth else "nothing is missing"]
+    return names + [SAME[name] for name in names if name in SAME]
+
+
 def probability(odds, truth):
     """Probability of the explanations that are the truth: its effects and no other."""
-    wanted = " + ".join(truth) if truth else "nothing is missing"
-    return sum(own["probability"] for own in odds["explanations"] if effects_of(own) == wanted)
+    return sum(own["probability"] for own in odds["explanations"] if effects_of(own) in right_names(truth))
 
 
 def others(odds, truth):
-    wanted = " + ".join(truth) if truth else "nothing is missing"
     if odds["none_of_these"] > 0.1:
         odds = {"explanations": [*odds["explanations"], {"effects": "none of these", "probability": odds["none_of_these"]}]}
-    rest = [own for own in odds["explanations"] if effects_of(own) != wanted]
+    rest = [own for own in odds["explanations"] if effects_of(own) not in right_names(truth)]
     return [f"{own['effects']} {own['probability']:.2f}" for own in rest if own["probability"] > 0.1]
 
 

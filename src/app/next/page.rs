@@ -51,7 +51,7 @@ pub(super) fn of_proposal(proposal: &Proposal, case: &str) -> Document<'static> 
         verdict,
         tone: if is_settled { Tone::Good } else { Tone::Open },
         lead: vec![format!(
-            "The largest force on the part, over 20 draws of the numbers of every open explanation, is {:.0} N; {:.0} N are allowed.",
+            "By draws of the numbers of every open explanation the part is pressed with no more than {:.0} N; {:.0} N are allowed.",
             chosen.force, proposal.limits.force
         )],
         sections: vec![

@@ -28,6 +28,10 @@ pub const EFFECT: Effect = Effect {
         hidden(VISCOUS, Linear(20.0), [0.0, 5000.0]),
     ],
     usual: |_, _| vec![12.0, 8e-4, 40.0],
-    starts: |_, _| vec![vec![8.0, 5e-4, 30.0], vec![20.0, 5e-4, 40.0], vec![8.0, 2e-3, 30.0], vec![20.0, 2e-3, 40.0]],
+    starts: |c, _| rubbing(c)
+        .map(|[dry, viscous]| vec![dry, 5e-4, viscous])
+        .into_iter()
+        .chain([vec![8.0, 5e-4, 30.0], vec![20.0, 5e-4, 40.0], vec![8.0, 2e-3, 30.0], vec![20.0, 2e-3, 40.0]])
+        .collect(),
     ..effect("presliding_hysteresis", Subsystem::ForceBalance)
 };

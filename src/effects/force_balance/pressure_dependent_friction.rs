@@ -30,7 +30,10 @@ pub const EFFECT: Effect = Effect {
     ],
     usual: |_, _| vec![5e-5, 3.0, 40.0, 3e-5],
     starts: |c, _| {
-        let mut starts = vec![vec![3e-5, 2.0, 30.0, 5e-5], vec![1e-4, 3.0, 40.0, 5e-5]];
+        // Where a plain law rubs already, half of it at 2 bar.
+        let rubs = rubbing(c).map(|[dry, viscous]| vec![0.5 * dry / 2e5, 0.5 * dry, viscous, 3e-5]);
+        let mut starts: Vec<Vec<f64>> = rubs.into_iter().collect();
+        starts.extend([vec![3e-5, 2.0, 30.0, 5e-5], vec![1e-4, 3.0, 40.0, 5e-5]]);
         // One small cylinder, moved slowly.
         if c.plant.parts == DeviceParts::MovedPiston {
             starts.extend([vec![2e-6, 4.0, 100.0, 5e-5], vec![1e-5, 2.0, 100.0, 5e-5]]);

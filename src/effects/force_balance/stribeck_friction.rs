@@ -29,6 +29,11 @@ pub const EFFECT: Effect = Effect {
         hidden(PRESLIDING, Logarithmic, [2e-6, 3e-4]),
     ],
     usual: |_, _| vec![10.0, 16.0, 0.01, 60.0, 3e-5],
-    starts: |_, _| vec![vec![4.0, 8.0, 0.008, 30.0, 5e-5], vec![8.0, 16.0, 0.008, 40.0, 5e-5], vec![8.0, 16.0, 0.03, 40.0, 5e-5]],
+    // Where a plain law rubs already, its dry part is between the two.
+    starts: |c, _| rubbing(c)
+        .map(|[dry, viscous]| vec![0.55 * dry, 1.1 * dry, 0.01, viscous, 3e-5])
+        .into_iter()
+        .chain([vec![4.0, 8.0, 0.008, 30.0, 5e-5], vec![8.0, 16.0, 0.008, 40.0, 5e-5], vec![8.0, 16.0, 0.03, 40.0, 5e-5]])
+        .collect(),
     ..effect("stribeck_friction", Subsystem::ForceBalance)
 };
