@@ -356,7 +356,7 @@ impl Programme {
         let mut lines: Vec<String> = [begin].into_iter().chain(of_part).collect();
         let has_valve = limits.arm.is_none();
         let mut from = 0.0;
-        for own in &self.segments {
+        for own in self.merged() {
             let [start, end] = own.set_pressure;
             let pressure = match (start - end).abs() < 1.0 {
                 true => format!("{} bar", bar(start)),
@@ -374,6 +374,25 @@ impl Programme {
             from += own.duration;
         }
         lines
+    }
+
+    /// Its segments, those in one that hold the same.
+    fn merged(&self) -> Vec<Segment> {
+        let mut merged: Vec<Segment> = Vec::new();
+        for own in &self.segments {
+            let holds = own.set_pressure[0] == own.set_pressure[1];
+            match merged.last_mut() {
+                Some(last)
+                    if holds
+                        && last.set_pressure == own.set_pressure
+                        && last.extends == own.extends =>
+                {
+                    last.duration += own.duration;
+                }
+                _ => merged.push(own.clone()),
+            }
+        }
+        merged
     }
 }
 
@@ -435,5 +454,17 @@ mod tests {
         assert_eq!(lines.len(), 2 + programme.segments.len());
         let end = format!("{:.2} s:", programme.duration());
         assert!(lines[lines.len() - 1].contains(&end), "{lines:?}");
+        let hold = Segment {
+            duration: 0.5,
+            set_pressure: [1e5; 2],
+            extends: true,
+        };
+        let still = Programme {
+            segments: vec![hold.clone(), hold],
+            part: Part::None,
+        };
+        let lines = still.instructions(&limits);
+        assert!(lines[2].contains("0.00 s to 1.00 s"), "{lines:?}");
+        assert_eq!(lines.len(), 3);
     }
 }

@@ -370,6 +370,9 @@ impl Ride {
             course.recording,
             place(self.start)
         )];
+        if self.legs.is_empty() {
+            lines.push("The arm rests there.".to_owned());
+        }
         let mut from = 0.0;
         for leg in &self.legs {
             let to = from + leg.duration;
