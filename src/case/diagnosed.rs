@@ -29,7 +29,7 @@ pub struct Diagnosed {
     pub comparison: Comparison,
     /// The search with all its explanations; none of a contact flange or an arm.
     pub diagnosis: Option<Diagnosis>,
-    /// What a diagnosis with a recording more goes on from; none but of a device on a bench.
+    /// What a diagnosis with a recording more goes on from; none but of a device on a bench or a cell.
     pub explanations: Option<Explanations>,
     /// The improved model; none of a contact flange or an arm.
     pub plant: Option<PlantParameters>,

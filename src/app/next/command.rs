@@ -46,7 +46,7 @@ pub(in super::super) struct NextArguments {
     scenario: Option<PathBuf>,
     #[command(flatten)]
     allowed: Allowed,
-    /// Folder for inputs.csv, bench.toml, instructions.txt, expected.svg, report.html and next.json [default: runs/<name of the case's folder>].
+    /// Folder for inputs.csv, bench.toml (of a cell cell.toml), instructions.txt, expected.svg, report.html and next.json [default: runs/<name of the case's folder>].
     #[arg(long, help_heading = "Output")]
     out: Option<PathBuf>,
     /// Put new results in place of old ones.

@@ -5,7 +5,7 @@ use crate::diagnosis::experiment::limits::LimitError;
 /// A refusal.
 #[derive(Debug, thiserror::Error)]
 pub enum NextError {
-    /// Nothing that a bench could do.
+    /// Neither a bench nor a cell.
     #[error(
         "{case}: experiments are proposed of a whole device, expected a folder with a rig.toml without [rig] chain, or a cell's recordings with --scenario; of a recorded arm `idc check ARM --design` writes one"
     )]

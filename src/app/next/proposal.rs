@@ -138,12 +138,16 @@ impl Proposal {
 
     /// A sentence on the explanations that it leaves open, for each sensor that would tell some of them apart.
     pub(super) fn left_open(&self) -> Vec<String> {
+        // Two pairs are in one sentence where they share an explanation: of others nothing is said between them.
         let mut groups: Vec<(Option<FurtherSensor>, Vec<usize>)> = Vec::new();
         for Inseparable { places, sensor } in &self.inseparable {
-            match groups.iter_mut().find(|(own, _)| own == sensor) {
-                Some((_, all)) => all.extend(places),
-                None => groups.push((*sensor, places.to_vec())),
-            }
+            let is_joined = |(own, all): &(Option<FurtherSensor>, Vec<usize>)| {
+                own == sensor && places.iter().any(|place| all.contains(place))
+            };
+            let (joined, apart): (Vec<_>, Vec<_>) = groups.into_iter().partition(is_joined);
+            let others = joined.into_iter().flat_map(|(_, all)| all);
+            groups = apart;
+            groups.push((*sensor, others.chain(*places).collect()));
         }
         let words = |(sensor, mut places): (Option<FurtherSensor>, Vec<usize>)| {
             places.sort_unstable();

@@ -300,7 +300,6 @@ impl Ride {
             let ends = [from, leg.to].map(|share| share * course.length());
             let shortest = course.shortest(ends, &reach.limits);
             if shortest < STILL {
-                left -= leg.rest;
                 continue;
             }
             let wanted = leg.slowness.max(1.0) * shortest;
