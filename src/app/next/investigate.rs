@@ -230,13 +230,16 @@ impl Growth {
         let entries = std::fs::read_dir(&self.folder).into_iter().flatten();
         for entry in entries.flatten() {
             let name = entry.file_name().display().to_string();
-            let number = name
-                .strip_prefix("run-")
-                .and_then(|n| n.strip_suffix(".csv"));
-            if number.is_some_and(|n| n.parse::<u32>().is_ok()) {
+            if number_of(&name).is_some() {
                 let _ = std::fs::remove_file(entry.path());
             }
         }
+    }
+
+    /// Number of its next recording: after those that an earlier investigation left among them.
+    fn next_number(&self) -> usize {
+        let numbers = self.names.iter().filter_map(|name| number_of(name));
+        numbers.max().map_or(1, |last| last + 1)
     }
 
     /// The case with all recordings.
@@ -266,6 +269,14 @@ impl Growth {
         self.take(name, recording)?;
         self.write()
     }
+}
+
+/// Number of a recording that was asked for, by its file's name; none of another.
+fn number_of(name: &str) -> Option<usize> {
+    name.strip_prefix("run-")?
+        .strip_suffix(".csv")?
+        .parse()
+        .ok()
 }
 
 /// A recording in another folder.
@@ -318,7 +329,7 @@ pub(in super::super) fn investigate(
             (false, _, true) => break (Stop::Runs, found),
             (false, _, false) => (),
         }
-        let number = asked.len() + 1;
+        let number = growth.next_number();
         let next = match ask(arguments, (&case, &found), (&program, &out, number), silent)? {
             Next::Recorded(next) => next,
             Next::Nothing(left_open) => break (Stop::NoExperiment(left_open), found),
@@ -576,5 +587,26 @@ fn tree(odds: &[Odds], asked: &[Asked], names: &[&str]) -> Panel<'static> {
         series: drawn.chain([none]).collect(),
         within: Some([0.0, 1.0]),
         ..Panel::default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The folder of an investigation is a case: one that is gone on from wrote its first recording over that of the other.
+    #[test]
+    fn recordings_of_an_earlier_investigation_keep_their_names() {
+        let growth = |names: &[&str]| Growth {
+            folder: PathBuf::new(),
+            rig: None,
+            cell: None,
+            names: names.iter().map(|name| (*name).to_owned()).collect(),
+        };
+        assert_eq!(growth(&["stairs.csv", "run-up.csv"]).next_number(), 1);
+        assert_eq!(
+            growth(&["run-10.csv", "stairs.csv", "run-2.csv"]).next_number(),
+            11
+        );
     }
 }
