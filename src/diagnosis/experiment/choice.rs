@@ -25,6 +25,8 @@ const BESIDE: f64 = 0.02;
 const OPEN: f64 = 0.1;
 /// Draws of an explanation's numbers with which the force on the part is looked at.
 const DRAWS: usize = 20;
+/// The same where the numbers change the force by little, and an impact by more than a normal law has it [1].
+const SPARE: f64 = 1.01;
 /// Information of a programme that was made gentler, at least [nat].
 const GAINS: f64 = 0.01;
 /// How far other draws may be beyond these: 5.6 standard deviations where these 20 are normal [1].
@@ -197,7 +199,7 @@ fn force_of(plants: &[Vec<PlantParameters>], inputs: &PlantInputs) -> f64 {
             .collect();
         let mean = forces.iter().sum::<f64>() / forces.len() as f64;
         let largest = forces.iter().copied().fold(0.0, f64::max);
-        mean + BEYOND * (largest - mean)
+        SPARE * (mean + BEYOND * (largest - mean))
     });
     bounds.fold(0.0, f64::max)
 }
@@ -342,7 +344,8 @@ mod tests {
     /// Experiments of this many seeds; `IDC_EXPERIMENTS` asks for others.
     const EXPERIMENTS: usize = 12;
 
-    /// Other draws than those that the choice looked at, 20 of each explanation, in experiments whose limit is below what most would press with.
+    /// Other draws than those that the choice looked at, 20 of each explanation, in experiments whose limit is below what most would press with: none is beyond the force
+    /// that the choice states.
     #[test]
     fn other_draws_keep_the_force_too() {
         let asked = std::env::var("IDC_EXPERIMENTS").ok();
@@ -374,7 +377,8 @@ mod tests {
                 .map(|plant| largest_force(&plant, &inputs))
                 .collect();
             let largest = forces.into_iter().fold(0.0, f64::max);
-            passed += usize::from(largest > gentle.force);
+            assert!(found.force <= gentle.force);
+            passed += usize::from(largest > found.force);
             near += usize::from(largest > 0.8 * gentle.force);
         }
         assert_eq!(passed, 0, "of {count}");
