@@ -163,6 +163,7 @@ mod tests {
             ("wall_conductance_w_per_k", 0.5, "W/K", 0.5),
             ("hose_resistance_pa_s_per_kg", 2e7, "Pa s/kg", 2e7),
             ("regulator_natural_frequency_rad_per_s", 30.0, "rad/s", 30.0),
+            ("joint_acceleration_rad_per_s2", 8.0, "rad/s2", 8.0),
             ("regulator_rise_limit_pa_per_s", 4e5, "Pa/s", 4e5),
             ("compressor_flow_kg_per_s", 1e-4, "kg/s", 1e-4),
             ("seal_pressure_coefficient_n_per_pa", 2e-5, "N/Pa", 2e-5),

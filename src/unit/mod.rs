@@ -136,6 +136,7 @@ pub const UNITS: &[Unit] = &[
     keys("N m/A", "n_m_per_a", "N m/A", Divide(1.0)), keys("kg m2", "kg_m2", "kg m2", Divide(1.0)),
     keys("N m s/rad", "n_m_s_per_rad", "N m s/rad", Divide(1.0)), keys("N m/rad", "n_m_per_rad", "N m/rad", Divide(1.0)), keys("Pa/s", "pa_per_s", "Pa/s", Divide(1.0)), keys("N/Pa", "n_per_pa", "N/Pa", Divide(1.0)),
     keys("N s/m", "n_s_per_m", "N s/m", Divide(1.0)), keys("N/m", "n_per_m", "N/m", Divide(1.0)), keys("N/m^1.5", "n_per_m15", "N/m^1.5", Divide(1.0)),
+    keys("rad/s2", "rad_per_s2", "rad/s2", Divide(1.0)),
     keys("N/s", "n_per_s", "N/s", Divide(1.0)), keys("mm/s3", "mm_per_s3", "m/s3", Divide(1e3)), keys("1/s", "per_s", "1/s", Divide(1.0)),
     keys("J/(kg K)", "j_per_kg_k", "J/(kg K)", Divide(1.0)), keys("bar gauge", "bar_gauge", "Pa", Multiply(1e5)),
     keys("Pa absolute", "pa_absolute", "Pa", Divide(1.0)), keys("cm3", "cm3", "m3", Divide(1e6)), keys("mm2", "mm2", "m2", Divide(1e6)),
