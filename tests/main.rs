@@ -31,6 +31,7 @@ mod equations;
 mod estimator;
 mod examples;
 mod excitation;
+mod experiment_designs;
 mod faults;
 mod feed;
 mod first_diagnosis;

@@ -17,6 +17,8 @@ pub struct OperatingLimits {
     pub solenoid: Option<bool>,
     /// Whether the tool may run without a workpiece.
     pub without_workpiece: Option<bool>,
+    /// Largest stroke [m].
+    pub stroke: Option<f64>,
     /// Largest force on the part [N].
     pub force: Option<f64>,
     /// Longest recording [s].

@@ -51,8 +51,11 @@ pub(super) fn of_proposal(proposal: &Proposal, case: &str) -> Document<'static> 
         verdict,
         tone: if is_settled { Tone::Good } else { Tone::Open },
         lead: vec![format!(
-            "By draws of the numbers of every open explanation the part is pressed with no more than {:.0} N; {:.0} N are allowed.",
-            chosen.force, proposal.limits.force
+            "By draws of the numbers of every open explanation the part is pressed with no more than {:.0} N; {:.0} N are allowed. The stroke comes to {:.1} mm{}.",
+            chosen.extremes.force,
+            proposal.limits.force,
+            chosen.extremes.stroke * 1e3,
+            allowed_stroke(proposal.limits.stroke),
         )],
         sections: vec![
             Section::new("Open explanations", of_open),
@@ -61,6 +64,13 @@ pub(super) fn of_proposal(proposal: &Proposal, case: &str) -> Document<'static> 
         ],
         footer: footer(proposal),
         ..Document::default()
+    }
+}
+
+fn allowed_stroke(stroke: f64) -> String {
+    match stroke.is_finite() {
+        true => format!(", {:.1} mm are allowed", stroke * 1e3),
+        false => String::new(),
     }
 }
 

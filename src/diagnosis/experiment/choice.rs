@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 use super::information::{Expected, Open, Outlook, Sensors, entropy, shares_of};
 use super::limits::{LimitError, Limits};
-use super::programme::{Part, Programme};
+use super::programme::Programme;
 use crate::diagnosis::fit::covariance::inverse;
 use crate::plant::{PlantInputs, PlantParameters, simulate};
 
@@ -69,14 +69,32 @@ pub struct Chosen {
     pub expected: Expected,
     /// Its value [nat/s].
     pub value: f64,
-    /// Force on the part that no draw of any explanation's numbers passes [N].
+    /// What no draw of any explanation's numbers passes.
+    pub extremes: Extremes,
+}
+
+/// How far an experiment goes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Extremes {
+    /// Largest force on the part [N].
     pub force: f64,
+    /// Largest stroke [m].
+    pub stroke: f64,
+}
+
+impl Extremes {
+    fn combined(self, other: Self, of: fn(f64, f64) -> f64) -> Self {
+        Self {
+            force: of(self.force, other.force),
+            stroke: of(self.stroke, other.stroke),
+        }
+    }
 }
 
 /// Chooses an experiment; `observer` is given programmes looked at and in all.
 ///
 /// # Errors
-/// None that keeps the force on the part.
+/// None that keeps the force on the part and the stroke.
 pub fn choose(
     open: &[Open],
     sensors: &Sensors,
@@ -95,7 +113,10 @@ pub fn choose(
         weight: if is_open { BESIDE } else { 1.0 },
         preparation: settings.preparation,
         kept: Vec::new(),
-        least: f64::INFINITY,
+        least: Extremes {
+            force: f64::INFINITY,
+            stroke: f64::INFINITY,
+        },
         most_on_numbers: 0.0,
     };
     let drawn = (DRAWN * settings.programmes as f64).ceil() as usize;
@@ -121,11 +142,16 @@ pub fn choose(
         }
     }
     observer(settings.programmes, settings.programmes);
+    let least = choice.least;
     match choice.kept.into_iter().next() {
         Some(best) => Ok(best),
+        None if least.stroke > limits.stroke => Err(LimitError::Stroke {
+            most: limits.stroke,
+            least: least.stroke,
+        }),
         None => Err(LimitError::Force {
             most: limits.force,
-            least: choice.least,
+            least: least.force,
         }),
     }
 }
@@ -141,8 +167,8 @@ struct Choice<'a> {
     preparation: f64,
     /// Programmes that are worth most, the best first.
     kept: Vec<Chosen>,
-    /// Least of the largest forces on the part [N].
-    least: f64,
+    /// Least of each over the programmes.
+    least: Extremes,
     most_on_numbers: f64,
 }
 
@@ -170,19 +196,19 @@ impl Choice<'_> {
             return None;
         }
         // Of a programme that would be kept, whether it may be done.
-        let force = match &programme.part {
-            Part::None => 0.0,
-            Part::Surface(_) | Part::Edge(_) => force_of(&self.plants, &inputs),
-        };
-        self.least = self.least.min(force);
-        if force > limits.force {
-            return Some(force);
+        let extremes = extremes_of(&self.plants, &inputs);
+        self.least = self.least.combined(extremes, f64::min);
+        if extremes.stroke > limits.stroke {
+            return None;
+        }
+        if extremes.force > limits.force {
+            return Some(extremes.force);
         }
         self.kept.push(Chosen {
             programme: programme.clone(),
             expected,
             value,
-            force,
+            extremes,
         });
         self.kept.sort_by(|a, b| b.value.total_cmp(&a.value));
         self.kept.truncate(KEPT);
@@ -190,24 +216,38 @@ impl Choice<'_> {
     }
 }
 
-/// Force on the part that no draw of an explanation's numbers passes, over all explanations [N]: of the largest force in each of the draws that are looked at their mean, and
-/// [`BEYOND`] times as far from it as the largest of them. Other draws are as many again, and half of such would pass the largest of these.
-fn force_of(plants: &[Vec<PlantParameters>], inputs: &PlantInputs) -> f64 {
+/// What no draw of an explanation's numbers passes, over all explanations: of the largest value in each of the draws that are looked at their mean, and [`BEYOND`]
+/// times as far from it as the largest of them. Other draws are as many again, and half of such would pass the largest of these.
+fn extremes_of(plants: &[Vec<PlantParameters>], inputs: &PlantInputs) -> Extremes {
     let bounds = plants.iter().map(|draws| {
-        let forces: Vec<f64> = (draws.par_iter())
-            .map(|plant| largest_force(plant, inputs))
+        let all: Vec<Extremes> = (draws.par_iter())
+            .map(|plant| largest(plant, inputs))
             .collect();
-        let mean = forces.iter().sum::<f64>() / forces.len() as f64;
-        let largest = forces.iter().copied().fold(0.0, f64::max);
-        SPARE * (mean + BEYOND * (largest - mean))
+        let bound = |of: fn(&Extremes) -> f64, spare: f64| {
+            let mean = all.iter().map(of).sum::<f64>() / all.len() as f64;
+            let largest = all.iter().map(of).fold(0.0, f64::max);
+            spare * (mean + BEYOND * (largest - mean))
+        };
+        Extremes {
+            force: bound(|own| own.force, SPARE),
+            stroke: bound(|own| own.stroke, 1.0),
+        }
     });
-    bounds.fold(0.0, f64::max)
+    let none = Extremes {
+        force: 0.0,
+        stroke: 0.0,
+    };
+    bounds.fold(none, |all, own| all.combined(own, f64::max))
 }
 
-/// Largest force on the part [N].
-fn largest_force(plant: &PlantParameters, inputs: &PlantInputs) -> f64 {
-    let force = simulate(plant, inputs).truth.contact_force.into_iter();
-    force.fold(0.0, f64::max)
+/// Largest force on the part and largest stroke.
+fn largest(plant: &PlantParameters, inputs: &PlantInputs) -> Extremes {
+    let truth = simulate(plant, inputs).truth;
+    let most = |values: Vec<f64>| values.into_iter().fold(0.0, f64::max);
+    Extremes {
+        force: most(truth.contact_force),
+        stroke: most(truth.stroke),
+    }
 }
 
 /// An explanation as it was fitted, and draws of its numbers.
@@ -326,7 +366,7 @@ mod tests {
             ..limits()
         };
         let found = chosen(&gained, &gentle, 60).unwrap();
-        assert!(found.force <= 150.0, "{}", found.force);
+        assert!(found.extremes.force <= 150.0, "{}", found.extremes.force);
         let surface = Limits {
             force: 1e-3,
             without_workpiece: false,
@@ -339,6 +379,26 @@ mod tests {
             error.contains("force_n") && error.contains("[limits]"),
             "{error}"
         );
+    }
+
+    /// The stroke is kept where a surface can stop the tool before it, and where nothing can, that is said.
+    #[test]
+    fn the_stroke_is_kept() {
+        let gained = pair(|plant| plant.sensors.force_gain = 1.05);
+        let short = Limits {
+            stroke: 0.03,
+            ..limits()
+        };
+        let found = chosen(&gained, &short, 60).unwrap();
+        assert!(found.extremes.stroke <= 0.03, "{:?}", found.extremes);
+        assert!(found.programme.surface().is_some());
+        let open = Limits {
+            surface: None,
+            set_pressure: [2e5, 3e5],
+            ..short
+        };
+        let error = chosen(&gained, &open, 10).unwrap_err().to_string();
+        assert!(error.contains("`stroke_m` = 0.0300 m"), "{error}");
     }
 
     /// Experiments of this many seeds; `IDC_EXPERIMENTS` asks for others.
@@ -374,11 +434,11 @@ mod tests {
             let inputs = found.programme.inputs(&gentle);
             let mut random = ChaCha8Rng::seed_from_u64(1_000_000 + seed);
             let forces: Vec<f64> = (open.iter().flat_map(|own| draws(own, &mut random)))
-                .map(|plant| largest_force(&plant, &inputs))
+                .map(|plant| super::largest(&plant, &inputs).force)
                 .collect();
             let largest = forces.into_iter().fold(0.0, f64::max);
-            assert!(found.force <= gentle.force);
-            passed += usize::from(largest > found.force);
+            assert!(found.extremes.force <= gentle.force);
+            passed += usize::from(largest > found.extremes.force);
             near += usize::from(largest > 0.8 * gentle.force);
         }
         assert_eq!(passed, 0, "of {count}");

@@ -48,6 +48,8 @@ pub struct Limits {
     pub surface_motion: [f64; 2],
     /// Whether the tool may run without a workpiece.
     pub without_workpiece: bool,
+    /// Largest stroke [m]; without end where a file states none, for what moves the tool has limits of its own.
+    pub stroke: f64,
     /// Largest force on the part [N].
     pub force: f64,
     /// Longest recording [s].
@@ -99,6 +101,16 @@ pub enum LimitError {
         /// The least of the largest forces [N].
         least: f64,
     },
+    /// The tool runs out farther than it may.
+    #[error(
+        "every programme that was tried extends the tool by more than `stroke_m` = {most:.4} m, at least by {least:.4} m; expected a larger stroke, or a surface that stops the tool before it, in [limits]"
+    )]
+    Stroke {
+        /// The limit [m].
+        most: f64,
+        /// The least of the largest strokes [m].
+        least: f64,
+    },
 }
 
 /// Shortest recording [s]: less is nothing that a person would set a rig up for.
@@ -135,6 +147,16 @@ impl Limits {
                 most,
             });
         }
+        if let (Some(least), Some(most)) = (stated.surface[0], stated.stroke)
+            && least > most
+        {
+            return Err(LimitError::Contradiction {
+                lower: "limits.surface_least_m",
+                least,
+                upper: "limits.stroke_m",
+                most,
+            });
+        }
         let limits = Self {
             movable,
             step: seen.step,
@@ -158,6 +180,7 @@ impl Limits {
                 }
                 None => true,
             },
+            stroke: stated.stroke.unwrap_or(f64::INFINITY),
             force: stated.force.unwrap_or(seen.force),
             duration: stated.duration.map_or(duration, |most| duration.min(most)),
             arm,
@@ -272,6 +295,7 @@ impl Limits {
             surface: Some([0.012, 0.031]),
             surface_motion: [0.2, 3.0],
             without_workpiece: true,
+            stroke: f64::INFINITY,
             force: 1e3,
             duration: 9.0,
             arm: None,
@@ -336,6 +360,7 @@ mod tests {
             surface_acceleration: Some(0.5),
             solenoid: Some(false),
             without_workpiece: Some(true),
+            stroke: Some(0.04),
             force: Some(12.0),
             duration: Some(3.0),
             joint_motion: [None; 2],
@@ -346,7 +371,10 @@ mod tests {
         assert_eq!(limits.surface.unwrap()[0], 0.018);
         assert_eq!(limits.surface_motion, [0.01, 0.5]);
         assert!(!limits.retracts && limits.without_workpiece);
-        assert_eq!((limits.force, limits.duration), (12.0, 3.0));
+        assert_eq!(
+            (limits.stroke, limits.force, limits.duration),
+            (0.04, 12.0, 3.0)
+        );
         let only = |set_pressure, solenoid, surface| Movable {
             set_pressure,
             solenoid,
@@ -378,6 +406,17 @@ mod tests {
         let error = error.to_string();
         assert!(
             error.contains("surface_least_m") && error.contains("0.03"),
+            "{error}"
+        );
+        let stated = OperatingLimits {
+            surface: [Some(0.02), Some(0.03)],
+            stroke: Some(0.01),
+            ..OperatingLimits::default()
+        };
+        let error = Limits::new(&recorded(), &stated, Movable::ALL, (8.0, None)).unwrap_err();
+        let error = error.to_string();
+        assert!(
+            error.contains("surface_least_m") && error.contains("stroke_m"),
             "{error}"
         );
     }

@@ -52,7 +52,11 @@ impl Search<'_> {
     }
 
     /// The best of the fits from each start of the law that is not the other's; none of one that has no start.
-    fn at_each_start(&self, effects: &[&'static Effect], other: &Hypothesis) -> Option<Hypothesis> {
+    pub(super) fn at_each_start(
+        &self,
+        effects: &[&'static Effect],
+        other: &Hypothesis,
+    ) -> Option<Hypothesis> {
         let pairs = effects.iter().zip(&other.effects);
         let index = pairs
             .into_iter()

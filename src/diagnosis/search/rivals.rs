@@ -4,8 +4,10 @@ use rayon::prelude::*;
 
 use super::Search;
 use super::progress::{Observer, Step};
+use super::ruled_out::exchanges;
 use crate::diagnosis::fit::hypothesis::{Hypothesis, is_equivalent};
 use crate::diagnosis::fit::{Limit, ROUGH, jacobian};
+use crate::effects::Effect;
 use crate::plant::DeviceParts;
 
 /// Rough score behind the best at which a rival is not fitted in full [1]: a full fit may gain that.
@@ -53,10 +55,11 @@ impl Search<'_> {
         let close: Vec<&Hypothesis> = (rough.iter().take(MOST))
             .take_while(|h| self.rough_score(h) < near)
             .collect();
-        let full: Vec<Hypothesis> = close
+        let mut full: Vec<Hypothesis> = close
             .par_iter()
             .map(|h| self.rival(h, score, HOPELESS))
             .collect();
+        full.extend(self.alike_rivals(best, found, &full));
         for h in &full {
             observer(&Step::Variation.of(h, format!("rival {:.1}", self.score(h))));
         }
@@ -71,6 +74,34 @@ impl Search<'_> {
             found.insert(0, better);
         }
         found[1..].sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+    }
+
+    /// What has another law of its kind in the place of one of the best explanation's, but for what is known already: a look at what the best does not explain cannot see
+    /// what would explain as much.
+    fn alike_rivals(
+        &self,
+        best: &Hypothesis,
+        found: &[Hypothesis],
+        more: &[Hypothesis],
+    ) -> Vec<Hypothesis> {
+        if best.unlisted().is_some() {
+            return Vec::new();
+        }
+        let is_known = |effects: &[&'static Effect]| {
+            let mut known = found.iter().chain(more);
+            known.any(|h| {
+                h.effects.len() == effects.len()
+                    && effects
+                        .iter()
+                        .all(|own| h.effects.iter().any(|e| e.name == own.name))
+            })
+        };
+        let all = exchanges(self, best);
+        let fitted = all.iter().filter(|effects| !is_known(effects));
+        let fitted = fitted.take_while(|_| !self.is_spent());
+        fitted
+            .filter_map(|effects| self.at_each_start(effects, best))
+            .collect()
     }
 
     /// Explanations of one effect less, beside which others are looked for: roughly, with their derivatives.

@@ -69,6 +69,8 @@ keys! {
         set_pressure: Option<f64> = "set_pressure_pa" in 0.0..=1.6e6;
         /// largest rate of the set pressure
         set_pressure_rate: Option<f64> = "set_pressure_rate_pa_per_s" in 1.0..=1e12;
+        /// largest stroke of the tool
+        stroke: Option<f64> = "stroke_m" in 0.0..=2.0;
         /// largest speed of a joint
         joint_speed: Option<f64> = "joint_speed_rad_per_s" in 1e-4..=20.0;
         /// largest acceleration of a joint
@@ -86,6 +88,7 @@ impl CellLimitsKeys {
         OperatingLimits {
             set_pressure: self.set_pressure,
             set_pressure_rate: self.set_pressure_rate,
+            stroke: self.stroke,
             force: self.force,
             duration: self.duration,
             joint_motion: [self.joint_speed, self.joint_acceleration],

@@ -75,6 +75,8 @@ keys! {
         set_pressure: Option<f64> = "set_pressure_pa" in 0.0..=1.6e6;
         /// largest rate of the set pressure
         set_pressure_rate: Option<f64> = "set_pressure_rate_pa_per_s" in 1.0..=1e12;
+        /// largest stroke of the tool
+        stroke: Option<f64> = "stroke_m" in 0.0..=2.0;
         /// where the surface may stand along the stroke, at least
         surface_least: Option<f64> = "surface_least_m" in 0.0..=2.0;
         /// where it may stand at most

@@ -320,6 +320,7 @@ pub(super) fn limits(
         surface_acceleration: keys.surface_acceleration,
         solenoid: keys.solenoid,
         without_workpiece: keys.without_workpiece,
+        stroke: keys.stroke,
         force: keys.force,
         duration: keys.duration,
         joint_motion: [None; 2],
