@@ -33,6 +33,8 @@ const GAINS: f64 = 0.01;
 const BEYOND: f64 = 3.0;
 /// Share of the programmes that are drawn, the others being changed ones [1].
 const DRAWN: f64 = 0.35;
+/// Explanations for which as many programmes are looked at as are asked for; of fewer, more in the same time.
+const OF: f64 = 6.0;
 /// Times that a programme which presses too hard is made gentler, and by how much more than its force asks for [1].
 const GENTLER: usize = 3;
 const MARGIN: f64 = 0.97;
@@ -42,7 +44,7 @@ const KEPT: usize = 6;
 /// What a choice is made by.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChoiceSettings {
-    /// Programmes that are looked at.
+    /// Programmes that are looked at where six explanations are open; of fewer, more in the same time.
     pub programmes: usize,
     /// Seed of what is drawn.
     pub seed: u64,
@@ -119,9 +121,11 @@ pub fn choose(
         },
         most_on_numbers: 0.0,
     };
-    let drawn = (DRAWN * settings.programmes as f64).ceil() as usize;
-    for index in 0..settings.programmes {
-        observer(index, settings.programmes);
+    let more = (OF / open.len() as f64).max(1.0);
+    let programmes = (more * settings.programmes as f64).round() as usize;
+    let drawn = (DRAWN * programmes as f64).ceil() as usize;
+    for index in 0..programmes {
+        observer(index, programmes);
         let kept = &choice.kept;
         let mut programme = match kept.is_empty() || index < drawn {
             true => Programme::drawn(limits, &mut random),
@@ -141,7 +145,7 @@ pub fn choose(
             programme = programme.gentler(MARGIN * limits.force / force);
         }
     }
-    observer(settings.programmes, settings.programmes);
+    observer(programmes, programmes);
     let least = choice.least;
     match choice.kept.into_iter().next() {
         Some(best) => Ok(best),
@@ -394,6 +398,7 @@ mod tests {
         assert!(found.programme.surface().is_some());
         let open = Limits {
             surface: None,
+            retracts: false,
             set_pressure: [2e5, 3e5],
             ..short
         };
