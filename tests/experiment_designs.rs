@@ -75,8 +75,6 @@ fn inputs(numbers: &[f64], limits: &Limits, with_surface: bool) -> PlantInputs {
         let from = input * (1 + 2 * SINES);
         (rest[from], &rest[from + 1..from + 1 + 2 * SINES])
     });
-    let count = (DURATION / limits.step).round() as usize + 1;
-    let time: Vec<f64> = (0..count).map(|i| i as f64 * limits.step).collect();
     let holds: Vec<f64> = (0..(DURATION / HOLD).ceil() as usize)
         .map(|i| i as f64 * HOLD)
         .collect();
@@ -98,20 +96,14 @@ fn inputs(numbers: &[f64], limits: &Limits, with_surface: bool) -> PlantInputs {
     let extends: Vec<bool> = (held((3.0 * valve.0 - 1.0, valve.1)).iter())
         .map(|own| !limits.retracts || *own >= 0.0)
         .collect();
-    let at = |t: &f64| ((t / HOLD + 1e-9) as usize).min(holds.len() - 1);
-    PlantInputs {
-        set_pressure: time.iter().map(|t| pressures[at(t)]).collect(),
-        extends: time.iter().map(|t| extends[at(t)]).collect(),
-        surface: match limits.surface.filter(|_| with_surface) {
-            Some(range) => places(surface, frequencies, &time, (range, limits)),
-            None => vec![f64::NAN; count],
-        },
-        cell: None,
-        motion: None,
-        initial: InitialState::AtRest,
-        place: 0,
-        time,
+    let mut made = recording(DURATION, &|t| {
+        let at = ((t / HOLD + 1e-9) as usize).min(holds.len() - 1);
+        (pressures[at], extends[at], f64::NAN)
+    });
+    if let Some(range) = limits.surface.filter(|_| with_surface) {
+        made.surface = places(surface, frequencies, &made.time, (range, limits));
     }
+    made
 }
 
 /// Places of the surface [m]: its motion as large as it is asked for or as its range, its speed and its acceleration allow.
@@ -249,6 +241,7 @@ fn optimal(
 /// Set pressure, whether the valve extends, and the surface at a time.
 type Inputs<'a> = &'a dyn Fn(f64) -> (f64, bool, f64);
 
+/// A recording's inputs.
 fn recording(duration: f64, at: Inputs<'_>) -> PlantInputs {
     let count = (duration / limits().step).round() as usize + 1;
     let time: Vec<f64> = (0..count).map(|i| i as f64 * limits().step).collect();
@@ -406,6 +399,38 @@ fn cases(count: usize) -> Vec<Open> {
     (effects.cycle().take(count))
         .map(|effect| known_about(effect, &mut random))
         .collect()
+}
+
+#[test]
+fn a_multisine_keeps_the_limits() {
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let limits = limits();
+    let (mut moved, mut reversed) = (0.0f64, false);
+    for _ in 0..50 {
+        let made = inputs(&drawn(&mut random), &limits, true);
+        let [least, most] = limits.set_pressure;
+        let kept = |p: &f64| (least..=most).contains(p);
+        assert!(made.set_pressure.iter().all(kept));
+        let holds: Vec<f64> = made.set_pressure.iter().copied().step_by(13).collect();
+        let rates = holds
+            .windows(2)
+            .map(|w| (w[1] - w[0]) / (13.0 * limits.step));
+        assert!(largest(rates) <= 2.0 * limits.set_pressure_rate);
+        let [near, far] = limits.surface.unwrap();
+        let within = |x: &f64| (near - 1e-12..=far + 1e-12).contains(x);
+        assert!(made.surface.iter().all(within));
+        let speeds: Vec<f64> = (made.surface.windows(2))
+            .map(|w| (w[1] - w[0]) / limits.step)
+            .collect();
+        let speed = largest(speeds.iter().copied());
+        assert!(speed <= 1.001 * limits.surface_motion[0]);
+        let accelerations = speeds.windows(2).map(|w| (w[1] - w[0]) / limits.step);
+        assert!(largest(accelerations) <= 1.001 * limits.surface_motion[1]);
+        moved = moved.max(speed);
+        reversed |= made.extends.iter().any(|extends| !extends);
+    }
+    // The limits are reached.
+    assert!(moved > 0.05 && reversed, "{moved} m/s");
 }
 
 #[test]

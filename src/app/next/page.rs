@@ -51,7 +51,7 @@ pub(super) fn of_proposal(proposal: &Proposal, case: &str) -> Document<'static> 
         verdict,
         tone: if is_settled { Tone::Good } else { Tone::Open },
         lead: vec![format!(
-            "By draws of the numbers of every open explanation the part is pressed with no more than {:.0} N; {:.0} N are allowed. The stroke comes to {:.1} mm{}.",
+            "By draws of the numbers of every open explanation the part is pressed with no more than {:.0} N; {:.0} N are allowed. The tool extends by no more than {:.1} mm{}.",
             chosen.extremes.force,
             proposal.limits.force,
             chosen.extremes.stroke * 1e3,
@@ -67,9 +67,10 @@ pub(super) fn of_proposal(proposal: &Proposal, case: &str) -> Document<'static> 
     }
 }
 
+/// What is said of the limit of the stroke [m] where there is one.
 fn allowed_stroke(stroke: f64) -> String {
     match stroke.is_finite() {
-        true => format!(", {:.1} mm are allowed", stroke * 1e3),
+        true => format!("; {:.1} mm are allowed", stroke * 1e3),
         false => String::new(),
     }
 }
