@@ -322,6 +322,11 @@ fn what_cannot_be_asked_is_refused() {
     let contradiction = "\n[limits]\nsurface_least_m = 0.03\nsurface_most_m = 0.02\n";
     for (limits, more, expected) in [
         (
+            "\n[limits]\nsurface_least_m = 0.021\nstroke_m = 0.01\n",
+            vec![],
+            vec!["stroke_m", "rig.toml", "at least surface_least_m"],
+        ),
+        (
             contradiction,
             vec![],
             vec!["surface_most_m", "at least surface_least_m"],

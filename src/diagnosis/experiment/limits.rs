@@ -147,7 +147,7 @@ impl Limits {
                 most,
             });
         }
-        if let (Some(least), Some(most)) = (stated.surface[0], stated.stroke)
+        if let (Some(least), Some(most)) = (least, stated.stroke)
             && least > most
         {
             return Err(LimitError::Contradiction {

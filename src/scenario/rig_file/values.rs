@@ -312,6 +312,12 @@ pub(super) fn limits(
         let expected = format!("at least surface_least_m, {least}");
         return Err(section.refuse("surface_most_m", most.to_string(), expected));
     }
+    if let (Some(least), Some(most)) = (keys.surface_least, keys.stroke)
+        && least > most
+    {
+        let expected = format!("at least surface_least_m, {least}");
+        return Err(section.refuse("stroke_m", most.to_string(), expected));
+    }
     Ok(OperatingLimits {
         set_pressure: keys.set_pressure,
         set_pressure_rate: keys.set_pressure_rate,
