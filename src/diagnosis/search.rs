@@ -193,6 +193,7 @@ impl Search<'_> {
         full.sort_by(|a, b| weighed.score(a).total_cmp(&weighed.score(b)));
         weighed.prefer_plain(&mut full, scale);
         weighed.add_unlisted(&mut full, (unexplained, &all[..], asked), scale, observer);
+        weighed.simplify_beside_term(&mut full, scale, observer);
         weighed.add_nominal(&mut full, observer);
         weighed.drop_below_noise(&mut full, scale, observer);
         weighed.add_close(&mut full, &all, scale, observer);

@@ -216,6 +216,7 @@ impl<'a> Replay<'a> {
             load.stroke = Cubic::hermite(span.length, ends.map(|j| self.surface[j]), slopes);
         }
         let set_pressure = inputs.set_pressure[i];
+        let bare = load;
         // Of what moves with a term a sample takes what is then, and a step what is in its middle.
         let moment = (rig.device).meet_terms(&mut load, set_pressure, inputs.surface[i]);
         let deflected = rig.joints.as_mut().map_or_else(Default::default, |joints| {
@@ -232,24 +233,28 @@ impl<'a> Replay<'a> {
         if span.to == i {
             return;
         }
-        rig.device
-            .face_terms(&mut load, moment.as_ref(), span.length);
         // Over a gap in the recording the inputs are held, in steps of the usual length.
         let least = if rig.joints.is_some() {
             FLEXING_PARTS
         } else {
             1.0
         };
+        let least = match moment {
+            Some(_) => f64::max(least, (self.usual / TERMS_HELD - 0.01).ceil()),
+            None => least,
+        };
         let parts = (span.length / self.usual - 0.01).ceil().max(1.0) * least;
         let dt = span.length / parts;
         for part in 0..parts as usize {
             let start = span.length * part as f64 / parts;
             let touches = [touch.later(start)];
-            let leg = load.later(start, &touches[..met]);
+            let mut leg = bare.later(start, &touches[..met]);
+            let moment = (rig.device).meet_terms(&mut leg, set_pressure, inputs.surface[i]);
+            rig.device.face_terms(&mut leg, moment.as_ref(), dt);
             let leg = self.bend(rig, i, &leg, touch.share, dt);
             rig.device.advance::<false>(&leg, set_pressure, (dt, 1));
+            rig.device.note_flow(dt);
         }
-        rig.device.note_flow(self.usual);
     }
 
     /// Where the ball rides on a sharp edge over a span.
@@ -420,6 +425,8 @@ fn on_its_way(
     (motion, state)
 }
 
+/// Time over which terms are held at most, where samples are farther apart [s]: chambers fill within a few milliseconds.
+const TERMS_HELD: f64 = 1e-3;
 /// Steps into which a sample is cut where links swing.
 const FLEXING_PARTS: f64 = 2.0;
 

@@ -105,6 +105,7 @@ pub(super) const FORMS: &[Form] = &[
     form("height * sin(2 * pi * X / period)", &[HEIGHT, PERIOD], Sense::Any),
     form("height * sin(2 * pi * X / period + phase)", &[HEIGHT, PERIOD, PHASE], Sense::Any),
     form("height * tanh(X / width)", &[HEIGHT, WIDTH], Sense::Any),
+    form("height * tanh((X - centre) / width)", &[HEIGHT, ("centre", Role::Place), WIDTH], Sense::Any),
     form("gain * min(max(X, -limit), limit)", &[GAIN, LIMIT], Sense::Any),
     form("-min(max(X, -limit), limit)", &[LIMIT], Sense::SameUnit),
     form("height * (1 - exp(-X / width))", &[HEIGHT, WIDTH], Sense::Time),

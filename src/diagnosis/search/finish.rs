@@ -8,7 +8,7 @@ use crate::diagnosis::fit::cross_validation::{Depth, left_out};
 use crate::diagnosis::fit::free::{Free, free_of};
 use crate::diagnosis::fit::hypothesis::{Hypothesis, covers, is_equivalent};
 use crate::effects::Effect;
-use crate::plant::DeviceParts;
+use crate::plant::{DeviceParts, PlantParameters};
 
 /// Standard deviations by which two fits' costs differ by chance in a measure that they were not fitted to, of a chi-square of as many numbers as are free [1].
 const CHANCE: f64 = 6.0;
@@ -28,6 +28,15 @@ fn again(richer: &Hypothesis) -> Refit<'_> {
         stages: LAST,
         ..Refit::FULL
     }
+}
+
+/// Whether two hypotheses have the same term beside their effects, or neither has one: formulas by their text, curves by where they act and over what.
+fn same_term(one: &Hypothesis, other: &Hypothesis) -> bool {
+    let described = |h: &Hypothesis| {
+        let formula = h.formula().map(|formula| formula.law.expression.text().to_owned());
+        h.unlisted().map(|term| (term.port, term.variable, formula))
+    };
+    described(one) == described(other)
 }
 
 impl Search<'_> {
@@ -207,8 +216,8 @@ impl Search<'_> {
     }
 
     /// Takes effects out of the best hypothesis as long as it scores better without, the last one too: a rough fit of the nominal model may have come to
-    /// rest where an effect of no size let a full one go on. Beside a model error an effect must also gain more than what all of them leave: less may
-    /// be a part of that error.
+    /// rest where an effect of no size let a full one go on, and an effect beside which a term was found may have done no more than lead to it. Beside a
+    /// model error an effect must also gain more than what all of them leave: less may be a part of that error.
     pub(in crate::diagnosis) fn eliminate(
         &self,
         full: &mut Vec<Hypothesis>,
@@ -216,14 +225,13 @@ impl Search<'_> {
     ) {
         while let Some(best) = full.first()
             && best.effects.len() > self.shown.len()
-            && best.unlisted().is_none()
             && !self.is_spent()
         {
             let score = self.score(best);
             // Beside a model error a fit from another minimum says nothing new.
             let weighed = !self.model_error.is_none();
             let known = |names: &[&str]| {
-                let mut full = full.iter().filter(|_| weighed);
+                let mut full = full.iter().filter(|h| weighed && same_term(h, best));
                 full.find(|known| known.names() == names).cloned()
             };
             let mut fewer: Vec<Hypothesis> = (self.shown.len()..best.effects.len())
@@ -250,7 +258,8 @@ impl Search<'_> {
             }
             // Each says how much its effect is needed. One fitted before may have come to rest in another minimum: the better fit counts.
             for one in fewer {
-                match full.iter().position(|known| known.names() == one.names()) {
+                let is_same = |known: &Hypothesis| known.names() == one.names() && same_term(known, &one);
+                match full.iter().position(is_same) {
                     None => full.push(one),
                     Some(at) if self.score(&one) < self.score(&full[at]) => full[at] = one,
                     Some(_) => {}
@@ -267,14 +276,26 @@ impl Search<'_> {
     /// rough fit is hopeless already.
     pub(super) fn without(&self, hypothesis: &Hypothesis, index: usize) -> Option<Hypothesis> {
         let (effects, mut free) = self.without_effect(hypothesis, index);
+        let nominal = PlantParameters {
+            latent: hypothesis.unlisted().cloned(),
+            ..self.nominal.clone()
+        };
         // What was not needed is missed at no sample.
-        let from = (&self.nominal, None);
-        let limit = Limit::of(LIGHTER);
-        let near = self.fitted(effects.clone(), from, &free, LAST, limit);
+        let from = (&nominal, None);
+        // Beside what is not there a term may have come to rest elsewhere.
+        let (stages, limit) = match hypothesis.unlisted() {
+            Some(_) => (FULL, Limit::FULL),
+            None => (LAST, Limit::of(LIGHTER)),
+        };
+        let depends_on = |h| Hypothesis {
+            depends_on: hypothesis.depends_on.clone(),
+            ..h
+        };
+        let near = self.fitted(effects.clone(), from, &free, stages, limit);
         if self.score(&near) < self.score(hypothesis) {
-            return Some(near);
+            return Some(depends_on(near));
         }
-        let rough = self.fitted(effects, from, &free, ROUGH, limit);
+        let rough = self.fitted(effects, from, &free, ROUGH, Limit::of(LIGHTER));
         // Beside a model error a rough fit is wrong by as much as that.
         let left = (hypothesis.fit.rough - rough_noise(self.evidence)).max(0.0);
         let reach = match self.model_error.is_none() {
@@ -288,7 +309,7 @@ impl Search<'_> {
             f.start = *value;
         }
         let effects = rough.effects;
-        Some(self.fitted(effects, from, &free, FULL, Limit::FULL))
+        Some(depends_on(self.fitted(effects, from, &free, FULL, Limit::FULL)))
     }
 
     /// Effects without one of them, and what they leave free, from where it was; what the effect freed is held to its tolerance again.

@@ -160,6 +160,37 @@ impl Search<'_> {
         }
     }
 
+    /// Takes the effects out that have done no more than lead to the best one's term, and asks for formulas in the place of a curve from where that leaves it: beside
+    /// what is not there no formula does what a curve can.
+    pub(super) fn simplify_beside_term(
+        &self,
+        full: &mut Vec<Hypothesis>,
+        scale: &Scale,
+        observer: &mut Observer<'_>,
+    ) {
+        let has_term = |h: &&Hypothesis| h.unlisted().is_some();
+        let Some(before) = full.first().filter(has_term).map(|h| h.effects.len()) else {
+            return;
+        };
+        self.eliminate(full, observer);
+        let is_lighter = |h: &&Hypothesis| has_term(h) && h.effects.len() < before;
+        let Some(curve) = full.first().filter(is_lighter) else {
+            return;
+        };
+        if curve.formula().is_some() || self.is_spent() {
+            return;
+        }
+        let base = self.where_its_term_was(curve);
+        let rough = self.refit(curve, Refit::ROUGH.from(Start::Here));
+        let mut found = self.formulas(&base, &[rough], scale, observer);
+        found.retain(|h| self.term_shows(h) && self.is_finite(h));
+        for one in &mut found {
+            one.depends_on.clone_from(&curve.depends_on);
+        }
+        full.extend(found);
+        full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+    }
+
     /// Puts a known effect in the place of the best formula where it leaves noise alone too: a rough fit of the nominal model may have been bent so far
     /// that no known effect promised anything beside it, and where the formula has put what is tolerated one does. A law of the list is the likelier one.
     pub(in crate::diagnosis) fn put_named_first(
