@@ -49,6 +49,11 @@ impl SensorErrors {
         pressure_drift: 0.0,
     };
 
+    /// Whether the load cell reads what was before its sample, or after it.
+    pub fn is_late(&self) -> bool {
+        self.force_lag > 0.0 || self.force_delay != 0.0
+    }
+
     /// Readings of the pressure sensor [Pa gauge] at increasing times [s], from the outlet [Pa gauge] there.
     pub fn pressure_readings(&self, time: &[f64], outlet: &[f64]) -> Vec<f64> {
         if self.pressure_offset == 0.0 && self.pressure_drift == 0.0 {

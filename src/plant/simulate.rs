@@ -16,7 +16,7 @@ use super::parts;
 use super::port::Port;
 use super::riding::Riding;
 use super::running_device::RunningDevice;
-use super::trajectory::Trajectory;
+use super::trajectory::{LoadCellSignal, Trajectory};
 use crate::device::{Device, DeviceParameters, DeviceState, PistonMotion};
 use crate::physics::regulator::RegulatorState;
 use crate::physics::valve::ValvePosition;
@@ -51,13 +51,22 @@ pub fn readings(
         .cell
         .as_ref()
         .is_some_and(|c| c.observed.force_along_slide);
-    let axial: Vec<f64>;
-    let force = if along_slide {
-        let pairs = truth.contact_force.iter().zip(&truth.share);
-        axial = pairs.map(|(force, share)| force * share).collect();
-        &axial
-    } else {
-        &truth.contact_force
+    let along = |force: &[f64], share: &[f64]| -> Vec<f64> {
+        let pairs = force.iter().zip(share);
+        let share_of = |share: f64| if along_slide { share } else { 1.0 };
+        pairs.map(|(force, share)| force * share_of(*share)).collect()
+    };
+    let cell = &truth.load_cell;
+    let force = match sensors.is_late() && !cell.time.is_empty() {
+        true => {
+            let force = along(&cell.contact_force, &cell.share);
+            let read = sensors.force_readings(&cell.time, &force, &cell.acceleration);
+            cell.samples.iter().map(|at| read[*at]).collect()
+        }
+        false => {
+            let force = along(&truth.contact_force, &truth.share);
+            sensors.force_readings(&inputs.time, &force, &truth.acceleration)
+        }
     };
     let mut readings = [
         sensors.pressure_readings(&inputs.time, &truth.outlet),
@@ -66,7 +75,7 @@ pub fn readings(
             .iter()
             .map(|stroke| sensors.stroke_gain * stroke)
             .collect(),
-        sensors.force_readings(&inputs.time, force, &truth.acceleration),
+        force,
         truth.acceleration.clone(),
     ];
     let ports = [
@@ -215,46 +224,53 @@ impl<'a> Replay<'a> {
             let slopes = ends.map(|j| inputs.slope(&self.surface, j));
             load.stroke = Cubic::hermite(span.length, ends.map(|j| self.surface[j]), slopes);
         }
-        let set_pressure = inputs.set_pressure[i];
-        let bare = load;
-        // Of what moves with a term a sample takes what is then, and a step what is in its middle.
-        let moment = (rig.device).meet_terms(&mut load, set_pressure, inputs.surface[i]);
-        let deflected = rig.joints.as_mut().map_or_else(Default::default, |joints| {
+        if let Some(joints) = &mut rig.joints {
             joints.face(i, riding.map(|riding| riding.normal));
-            joints.now(i, rig.device.motion.stroke, touch.share)
-        });
-        let added_outlet = moment.map_or(0.0, |now| self.plant.term(Port::OutletPressure, &now));
-        truth.note(
-            &rig.device,
-            &load.deflected(&deflected),
-            &touch,
-            added_outlet,
-        );
-        if span.to == i {
-            return;
         }
-        // Over a gap in the recording the inputs are held, in steps of the usual length.
-        let least = if rig.joints.is_some() {
-            FLEXING_PARTS
-        } else {
-            1.0
-        };
-        let least = match moment {
-            Some(_) => f64::max(least, (self.usual / TERMS_HELD - 0.01).ceil()),
-            None => least,
-        };
-        let parts = (span.length / self.usual - 0.01).ceil().max(1.0) * least;
-        let dt = span.length / parts;
-        for part in 0..parts as usize {
-            let start = span.length * part as f64 / parts;
+        let set_pressure = inputs.set_pressure[i];
+        let flexes = rig.joints.is_some();
+        let parts = if span.to == i { 1 } else { self.parts(span, flexes) };
+        let dt = span.length / parts as f64;
+        for part in 0..parts {
+            let start = span.length * part as f64 / parts as f64;
             let touches = [touch.later(start)];
-            let mut leg = bare.later(start, &touches[..met]);
+            let mut leg = load.later(start, &touches[..met]);
+            // Of what moves with a term a sample takes what is then, and a step what is in its middle.
             let moment = (rig.device).meet_terms(&mut leg, set_pressure, inputs.surface[i]);
+            let felt = || {
+                let motion = rig.device.motion;
+                let joints = rig.joints.as_ref();
+                let bent = joints.map(|joints| joints.now(i, motion.stroke, touch.share));
+                Felt::of(&rig.device, &leg.deflected(&bent.unwrap_or_default()), &touches[0])
+            };
+            if part == 0 {
+                let outlet = |now| self.plant.term(Port::OutletPressure, &now);
+                truth.note(&rig.device, &felt(), moment.map_or(0.0, outlet));
+            }
+            if self.plant.sensors.is_late() {
+                truth.load_cell.note(inputs.time[i] + start, &felt(), part == 0);
+            }
+            if span.to == i {
+                return;
+            }
             rig.device.face_terms(&mut leg, moment.as_ref(), dt);
             let leg = self.bend(rig, i, &leg, touch.share, dt);
             rig.device.advance::<false>(&leg, set_pressure, (dt, 1));
             rig.device.note_flow(dt);
         }
+    }
+
+    /// Steps into which a span is cut, of an arm that flexes or another; over a gap in the recording the inputs are held, in steps of the usual length.
+    fn parts(&self, span: Span, flexes: bool) -> usize {
+        let longest = [
+            (flexes, self.usual / FLEXING_PARTS),
+            (self.plant.has_terms(), TERMS_HELD),
+            (self.plant.sensors.is_late(), LOAD_CELL_EVERY),
+        ];
+        let longest = longest.into_iter().filter(|(applies, _)| *applies);
+        let longest = longest.fold(self.usual, |least, (_, step)| least.min(step));
+        let usual = (self.usual / longest - 0.01).ceil().max(1.0);
+        ((span.length / self.usual - 0.01).ceil().max(1.0) * usual) as usize
     }
 
     /// Where the ball rides on a sharp edge over a span.
@@ -425,8 +441,10 @@ fn on_its_way(
     (motion, state)
 }
 
-/// Time over which terms are held at most, where samples are farther apart [s]: chambers fill within a few milliseconds.
+/// Time over which terms are held at most [s]: chambers fill within a few milliseconds.
 const TERMS_HELD: f64 = 1e-3;
+/// Time between the forces that a late or slow load cell feels at most [s]: a contact begins and ends within a few milliseconds.
+const LOAD_CELL_EVERY: f64 = 5e-4;
 /// Steps into which a sample is cut where links swing.
 const FLEXING_PARTS: f64 = 2.0;
 
@@ -445,15 +463,36 @@ impl Trajectory {
         }
     }
 
-    fn note(
-        &mut self,
-        device: &RunningDevice<'_>,
-        load: &PistonLoad<'_>,
-        touch: &Touch,
-        added_outlet: f64,
-    ) {
+    fn note(&mut self, device: &RunningDevice<'_>, felt: &Felt, added_outlet: f64) {
         let (state, motion) = (&device.state, device.motion);
         let pressures = device.device.pressures(state, motion.stroke);
+        self.outlet.push(state.regulator.outlet + added_outlet);
+        self.stroke.push(motion.stroke);
+        self.speed.push(motion.speed);
+        self.acceleration.push(felt.acceleration);
+        self.contact_force.push(felt.contact_force);
+        self.hold_force.push(felt.hold_force);
+        self.share.push(felt.share);
+        self.pressures[0].push(pressures[0]);
+        self.pressures[1].push(pressures[1]);
+        self.mass_flow.push(device.mass_flow);
+    }
+}
+
+/// What acts on the moving mass at a moment.
+struct Felt {
+    /// Contact force [N], and its share along the stroke [1].
+    contact_force: f64,
+    share: f64,
+    /// Force of what holds it to a measured motion [N].
+    hold_force: f64,
+    /// Acceleration along extension [m/s2].
+    acceleration: f64,
+}
+
+impl Felt {
+    fn of(device: &RunningDevice<'_>, load: &PistonLoad<'_>, touch: &Touch) -> Self {
+        let motion = device.motion;
         let share = load.axial_share(touch);
         let contact_force = load.contact_force(0.0, motion);
         let hold_force = load.hold.map_or(0.0, |hold| hold.force(0.0, motion));
@@ -461,16 +500,23 @@ impl Trajectory {
             - share * contact_force
             - load.friction.at(motion.stroke);
         let force = device.force() + outside;
-        self.outlet.push(state.regulator.outlet + added_outlet);
-        self.stroke.push(motion.stroke);
-        self.speed.push(motion.speed);
-        self.acceleration
-            .push(force / device.device.parameters().moving_mass);
-        self.contact_force.push(contact_force);
-        self.hold_force.push(hold_force);
-        self.share.push(share);
-        self.pressures[0].push(pressures[0]);
-        self.pressures[1].push(pressures[1]);
-        self.mass_flow.push(device.mass_flow);
+        Self {
+            contact_force,
+            share,
+            hold_force,
+            acceleration: force / device.device.parameters().moving_mass,
+        }
+    }
+}
+
+impl LoadCellSignal {
+    fn note(&mut self, time: f64, felt: &Felt, is_sample: bool) {
+        if is_sample {
+            self.samples.push(self.time.len());
+        }
+        self.time.push(time);
+        self.contact_force.push(felt.contact_force);
+        self.share.push(felt.share);
+        self.acceleration.push(felt.acceleration);
     }
 }

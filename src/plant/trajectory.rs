@@ -42,6 +42,23 @@ pub struct Trajectory {
     pub hold_force: Vec<f64>,
     /// Share of the contact force along the stroke [1].
     pub share: Vec<f64>,
+    /// What a late or slow load cell feels between the samples; empty of another.
+    pub load_cell: LoadCellSignal,
+}
+
+/// What a load cell feels, at the samples and between them: one that is late or slow reads what was before its sample.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct LoadCellSignal {
+    /// Times [s].
+    pub time: Vec<f64>,
+    /// Contact force [N].
+    pub contact_force: Vec<f64>,
+    /// Share of it along the stroke [1].
+    pub share: Vec<f64>,
+    /// Acceleration along extension [m/s2].
+    pub acceleration: Vec<f64>,
+    /// Places of the samples among them.
+    pub samples: Vec<usize>,
 }
 
 impl Trajectory {
@@ -58,6 +75,7 @@ impl Trajectory {
             mass_flow: nothing.clone(),
             hold_force: nothing.clone(),
             share: vec![1.0; count],
+            load_cell: LoadCellSignal::default(),
         }
     }
 }
