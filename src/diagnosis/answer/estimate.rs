@@ -5,7 +5,8 @@
 //!
 //! Two things no residual tells are added. A law of the catalogue describes a real part to a hundredth of its own effect, no better (two standard
 //! deviations; friction, orifices and lines are known to that at best: Armstrong-Helouvry et al. 1994, ISO 6358). And a sampled recording does not show
-//! where between two samples something happened: a delay or a time constant is uncertain by half a sample either way, evenly.
+//! where between two samples a command was taken: a delay or a time constant of what follows one is uncertain by half a sample either way, evenly. A load cell
+//! follows a force that is simulated between the samples too.
 
 use crate::diagnosis::fit::Fit;
 use crate::diagnosis::fit::covariance::covariance;
@@ -14,7 +15,7 @@ use crate::diagnosis::fit::hypothesis::Hypothesis;
 use crate::diagnosis::recordings::evidence::Evidence;
 use crate::diagnosis::search::ranking::Ranked;
 use crate::effects::{Coordinate, Effect};
-use crate::plant::{Latent, PlantParameters};
+use crate::plant::{Latent, PlantParameters, registry};
 use crate::stats::{NORMAL_95, median_step};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
@@ -155,8 +156,13 @@ fn allowance(nominal: &PlantParameters, free: &Free, value: f64, sample: f64) ->
     }
     let before = free.quantity.get(nominal);
     let own = value - if before.is_finite() { before } else { 0.0 };
+    let of_load_cell = [&registry::FORCE_LAG, &registry::FORCE_DELAY].map(registry::Number::quantity);
+    let of_load_cell = of_load_cell.iter().any(|own| own.is(&free.quantity));
     let late = ["delay_s", "offset_s", "time_constant_s"].contains(&free.quantity.name);
-    let between = if late { sample / 12f64.sqrt() } else { 0.0 };
+    let between = match late && !of_load_cell {
+        true => sample / 12f64.sqrt(),
+        false => 0.0,
+    };
     (IDEALISATION_OF_NUMBERS * own).hypot(between)
 }
 
