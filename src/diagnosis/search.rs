@@ -1,6 +1,7 @@
 //! Which effects explain what the nominal model leaves.
 
 mod alike;
+mod beyond;
 pub mod detectable;
 pub(super) mod finish;
 mod formulas;
@@ -197,6 +198,7 @@ impl Search<'_> {
         weighed.add_nominal(&mut full, observer);
         weighed.drop_below_noise(&mut full, scale, observer);
         weighed.add_close(&mut full, &all, scale, observer);
+        weighed.add_beyond(&mut full, (unexplained, &all), observer);
         let roughly = self.tried_roughly(&full, &all, (unexplained, noise));
         (full, roughly, weighed.model_error)
     }

@@ -54,7 +54,9 @@ pub fn readings(
     let along = |force: &[f64], share: &[f64]| -> Vec<f64> {
         let pairs = force.iter().zip(share);
         let share_of = |share: f64| if along_slide { share } else { 1.0 };
-        pairs.map(|(force, share)| force * share_of(*share)).collect()
+        pairs
+            .map(|(force, share)| force * share_of(*share))
+            .collect()
     };
     let cell = &truth.load_cell;
     let force = match sensors.is_late() && !cell.time.is_empty() {
@@ -229,7 +231,11 @@ impl<'a> Replay<'a> {
         }
         let set_pressure = inputs.set_pressure[i];
         let flexes = rig.joints.is_some();
-        let parts = if span.to == i { 1 } else { self.parts(span, flexes) };
+        let parts = if span.to == i {
+            1
+        } else {
+            self.parts(span, flexes)
+        };
         let dt = span.length / parts as f64;
         for part in 0..parts {
             let start = span.length * part as f64 / parts as f64;
@@ -241,14 +247,20 @@ impl<'a> Replay<'a> {
                 let motion = rig.device.motion;
                 let joints = rig.joints.as_ref();
                 let bent = joints.map(|joints| joints.now(i, motion.stroke, touch.share));
-                Felt::of(&rig.device, &leg.deflected(&bent.unwrap_or_default()), &touches[0])
+                Felt::of(
+                    &rig.device,
+                    &leg.deflected(&bent.unwrap_or_default()),
+                    &touches[0],
+                )
             };
             if part == 0 {
                 let outlet = |now| self.plant.term(Port::OutletPressure, &now);
                 truth.note(&rig.device, &felt(), moment.map_or(0.0, outlet));
             }
             if self.plant.sensors.is_late() {
-                truth.load_cell.note(inputs.time[i] + start, &felt(), part == 0);
+                truth
+                    .load_cell
+                    .note(inputs.time[i] + start, &felt(), part == 0);
             }
             if span.to == i {
                 return;

@@ -156,7 +156,8 @@ fn allowance(nominal: &PlantParameters, free: &Free, value: f64, sample: f64) ->
     }
     let before = free.quantity.get(nominal);
     let own = value - if before.is_finite() { before } else { 0.0 };
-    let of_load_cell = [&registry::FORCE_LAG, &registry::FORCE_DELAY].map(registry::Number::quantity);
+    let of_load_cell =
+        [&registry::FORCE_LAG, &registry::FORCE_DELAY].map(registry::Number::quantity);
     let of_load_cell = of_load_cell.iter().any(|own| own.is(&free.quantity));
     let late = ["delay_s", "offset_s", "time_constant_s"].contains(&free.quantity.name);
     let between = match late && !of_load_cell {

@@ -33,7 +33,9 @@ fn again(richer: &Hypothesis) -> Refit<'_> {
 /// Whether two hypotheses have the same term beside their effects, or neither has one: formulas by their text, curves by where they act and over what.
 fn same_term(one: &Hypothesis, other: &Hypothesis) -> bool {
     let described = |h: &Hypothesis| {
-        let formula = h.formula().map(|formula| formula.law.expression.text().to_owned());
+        let formula = h
+            .formula()
+            .map(|formula| formula.law.expression.text().to_owned());
         h.unlisted().map(|term| (term.port, term.variable, formula))
     };
     described(one) == described(other)
@@ -258,7 +260,8 @@ impl Search<'_> {
             }
             // Each says how much its effect is needed. One fitted before may have come to rest in another minimum: the better fit counts.
             for one in fewer {
-                let is_same = |known: &Hypothesis| known.names() == one.names() && same_term(known, &one);
+                let is_same =
+                    |known: &Hypothesis| known.names() == one.names() && same_term(known, &one);
                 match full.iter().position(is_same) {
                     None => full.push(one),
                     Some(at) if self.score(&one) < self.score(&full[at]) => full[at] = one,
@@ -309,7 +312,13 @@ impl Search<'_> {
             f.start = *value;
         }
         let effects = rough.effects;
-        Some(depends_on(self.fitted(effects, from, &free, FULL, Limit::FULL)))
+        Some(depends_on(self.fitted(
+            effects,
+            from,
+            &free,
+            FULL,
+            Limit::FULL,
+        )))
     }
 
     /// Effects without one of them, and what they leave free, from where it was; what the effect freed is held to its tolerance again.
@@ -397,7 +406,7 @@ impl Search<'_> {
     }
 
     /// Whether a hypothesis predicts recordings that were left out better than a simpler one. Where there are none, nothing speaks against it.
-    fn predicts_better(
+    pub(super) fn predicts_better(
         &self,
         more: &Hypothesis,
         simpler: &Hypothesis,
