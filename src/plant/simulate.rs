@@ -532,3 +532,90 @@ impl LoadCellSignal {
         self.acceleration.push(felt.acceleration);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plant::sensors::SensorErrors;
+    use crate::plant::{Basis, Latent, Variable};
+
+    /// A device that meets a surface and lets go, sampled every so many steps of 0.25 ms; inputs change at multiples of 4 ms.
+    fn recorded(plant: &PlantParameters, every: usize) -> PlantTrajectory {
+        let time: Vec<f64> = (0..=2400)
+            .step_by(every)
+            .map(|i| 2.5e-4 * i as f64)
+            .collect();
+        let extends = |t: &f64| !(0.36..0.44).contains(t);
+        let inputs = PlantInputs {
+            cell: None,
+            motion: None,
+            initial: InitialState::AtRest,
+            place: 0,
+            set_pressure: vec![2e5; time.len()],
+            extends: time.iter().map(extends).collect(),
+            surface: vec![0.01; time.len()],
+            time,
+        };
+        simulate(plant, &inputs)
+    }
+
+    fn plant() -> PlantParameters {
+        PlantParameters {
+            contact: ContactParameters::linear(1e5, 400.0),
+            ..PlantParameters::default()
+        }
+    }
+
+    /// Largest differences of pressure, stroke and force at every 4 ms from the same with sixteen samples for each.
+    fn differences(plant: &PlantParameters) -> [f64; 3] {
+        let (coarse, fine) = (recorded(plant, 16), recorded(plant, 1));
+        [0, 1, 2].map(|channel| {
+            let fine = fine.readings[channel].iter().step_by(16);
+            let pairs = coarse.readings[channel].iter().zip(fine);
+            pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+        })
+    }
+
+    /// A law of the chamber's pressure at the outlet, held over samples of 4 ms, moved the stroke by ten times a sensor's noise, and was not found for that.
+    #[test]
+    fn a_term_is_the_same_however_seldom_it_is_sampled() {
+        let mut plant = plant();
+        let bare = differences(&plant);
+        plant.latent = Some(Latent {
+            port: Port::OutletPressure,
+            variable: Variable::ChamberPressure,
+            directed: false,
+            basis: Basis::Hats { ends: [1e5, 3e5] },
+            coefficients: vec![0.0, -3e4],
+        });
+        let with = differences(&plant);
+        assert!(bare[1] < 2e-6 && with[1] < 1e-5, "{bare:?}, {with:?}");
+        assert!(with[2] < 1.0, "{with:?}");
+    }
+
+    /// What a load cell feels was taken linear between samples of 4 ms: a contact's onset in between was late by a tenth of the force, and a lag was named an offset.
+    #[test]
+    fn a_late_load_cell_feels_what_there_is_between_the_samples() {
+        let plain = differences(&plant());
+        for late in [
+            SensorErrors {
+                force_lag: 1.5e-3,
+                ..SensorErrors::NONE
+            },
+            SensorErrors {
+                force_delay: 5.1e-3,
+                ..SensorErrors::NONE
+            },
+        ] {
+            let mut plant = plant();
+            plant.sensors = late;
+            let [_, stroke, force] = differences(&plant);
+            assert!(stroke < 2e-6, "{stroke}");
+            assert!(
+                force < plain[2] + 0.5,
+                "{late:?}: {force} N, {} N of one in time",
+                plain[2]
+            );
+        }
+    }
+}

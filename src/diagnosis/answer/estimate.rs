@@ -14,11 +14,12 @@ use crate::diagnosis::fit::free::{Free, Prior};
 use crate::diagnosis::fit::hypothesis::Hypothesis;
 use crate::diagnosis::recordings::evidence::Evidence;
 use crate::diagnosis::search::ranking::Ranked;
-use crate::effects::{Coordinate, Effect};
+use crate::effects::{Coordinate, Effect, Parameter};
 use crate::plant::{Latent, PlantParameters, registry};
 use crate::stats::{NORMAL_95, median_step};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// Standard deviation of what a law leaves out, as a share of its own effect [1].
 const IDEALISATION_OF_NUMBERS: f64 = 0.005;
@@ -235,6 +236,26 @@ fn last_of_term(hypothesis: &Hypothesis, index: usize) -> bool {
     index + own >= hypothesis.fit.free.len()
 }
 
+/// Places of the numbers of each effect that does nothing where its numbers are those of the nominal model. Of friction with no Coulomb force the viscous coefficient alone may
+/// be 0: that does not take the friction away.
+fn vanishing(nominal: &PlantParameters, hypothesis: &Hypothesis) -> Vec<Range<usize>> {
+    let effects = hypothesis.effects.iter().enumerate();
+    let vanishing = effects.filter(|(_, effect)| vanishes(nominal, effect));
+    let places = vanishing.map(|(index, _)| hypothesis.numbers_of(nominal, index));
+    places.collect()
+}
+
+/// Whether an effect does nothing where its numbers are those of the nominal model, which they may be.
+fn vanishes(nominal: &PlantParameters, effect: &Effect) -> bool {
+    let mut plant = nominal.clone();
+    let may_be = |parameter: &Parameter| {
+        let value = parameter.quantity.get(nominal);
+        parameter.quantity.set(&mut plant, value);
+        (parameter.bounds[0]..=parameter.bounds[1]).contains(&value)
+    };
+    effect.parameters(nominal).iter().all(may_be) && plant == *nominal
+}
+
 /// Numbers and intervals of the first of the explanations.
 pub fn estimates(nominal: &PlantParameters, ranked: &[Ranked], evidence: &Evidence) -> Estimates {
     let hypothesis = &ranked[0].hypothesis;
@@ -249,12 +270,13 @@ pub fn estimates(nominal: &PlantParameters, ranked: &[Ranked], evidence: &Eviden
         covariance[(index, index)] += between;
     }
     let sample = longest_sample(evidence);
-    let effects_end = fit.free.len() - hypothesis.unlisted().map_or(0, Latent::numbers);
     for (index, free) in fit.free.iter().enumerate().skip(first) {
         let slope = free.coordinate.slope(fit.values[index]);
         let allowed = allowance(nominal, free, fit.values[index], sample);
         covariance[(index, index)] += (allowed / slope).powi(2);
     }
+    let vanishing = vanishing(nominal, hypothesis);
+    let vanishes = |index: usize| vanishing.iter().any(|own| own.contains(&index));
     let number = |index: usize, reported: bool| {
         let free = &fit.free[index];
         let deviation = covariance[(index, index)].max(0.0).sqrt();
@@ -262,9 +284,7 @@ pub fn estimates(nominal: &PlantParameters, ranked: &[Ranked], evidence: &Eviden
         let ends =
             [-INTERVAL, INTERVAL].map(|z| free.clamp(free.coordinate.value(at + z * deviation)));
         let interval = [ends[0].min(ends[1]), ends[0].max(ends[1])];
-        let of_effect = (first..effects_end).contains(&index);
-        let without = Some(free.quantity.get(nominal))
-            .filter(|v| of_effect && (free.bounds[0]..=free.bounds[1]).contains(v));
+        let without = Some(free.quantity.get(nominal)).filter(|_| vanishes(index));
         Number {
             name: free.quantity.name,
             value: fit.values[index],
@@ -361,6 +381,25 @@ mod tests {
             covariance,
             DMatrix::from_row_slice(2, 2, &[4.0, 3.0, 3.0, 9.0])
         );
+    }
+
+    /// A device with 2.3 N of friction and a Stribeck velocity that may have been the default of a seal without friction was stated at 50 %, for the interval of that
+    /// velocity held "its value without the effect".
+    #[test]
+    fn a_number_that_cannot_take_its_effect_away_has_no_value_without_it() {
+        let all = [
+            ("coulomb_viscous_friction", false),
+            ("stribeck_friction", false),
+            ("end_cushioning", false),
+            ("supply_droop", false),
+            ("moving_mass_error", true),
+            ("axial_force_offset", true),
+            ("force_sensor_bias_drift", true),
+        ];
+        for (name, expected) in all {
+            let effect = every().find(|effect| effect.name == name).unwrap();
+            assert_eq!(vanishes(&plant(), effect), expected, "{name}");
+        }
     }
 
     /// 7 to 3 between 1 and 3: 0.3 times the square of their difference. One without the number says nothing of it.
