@@ -454,7 +454,7 @@ fn on_its_way(
 }
 
 /// Time over which terms are held at most [s]: chambers fill within a few milliseconds.
-const TERMS_HELD: f64 = 1e-3;
+const TERMS_HELD: f64 = 5e-4;
 /// Time between the forces that a late or slow load cell feels at most [s]: a contact begins and ends within a few milliseconds.
 const LOAD_CELL_EVERY: f64 = 1.25e-4;
 /// Steps into which a sample is cut where links swing.

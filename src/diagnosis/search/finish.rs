@@ -285,20 +285,23 @@ impl Search<'_> {
         };
         // What was not needed is missed at no sample.
         let from = (&nominal, None);
-        // Beside what is not there a term may have come to rest elsewhere.
-        let (stages, limit) = match hypothesis.unlisted() {
-            Some(_) => (FULL, Limit::FULL),
-            None => (LAST, Limit::of(LIGHTER)),
-        };
         let depends_on = |h| Hypothesis {
             depends_on: hypothesis.depends_on.clone(),
             ..h
         };
-        let near = self.fitted(effects.clone(), from, &free, stages, limit);
+        let limit = Limit::of(LIGHTER);
+        let mut near = self.fitted(effects.clone(), from, &free, LAST, limit);
+        if hypothesis.unlisted().is_some() {
+            // Beside what is not there a term may have come to rest elsewhere.
+            let again = self.refit(&near, Refit::FULL.from(Start::Here));
+            if self.score(&again) < self.score(&near) {
+                near = again;
+            }
+        }
         if self.score(&near) < self.score(hypothesis) {
             return Some(depends_on(near));
         }
-        let rough = self.fitted(effects, from, &free, ROUGH, Limit::of(LIGHTER));
+        let rough = self.fitted(effects, from, &free, ROUGH, limit);
         // Beside a model error a rough fit is wrong by as much as that.
         let left = (hypothesis.fit.rough - rough_noise(self.evidence)).max(0.0);
         let reach = match self.model_error.is_none() {
