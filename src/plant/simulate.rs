@@ -543,7 +543,7 @@ mod tests {
     fn recorded(plant: &PlantParameters, every: usize) -> PlantTrajectory {
         let time: Vec<f64> = (0..=2400)
             .step_by(every)
-            .map(|i| 2.5e-4 * i as f64)
+            .map(|i| 2.5e-4 * f64::from(i))
             .collect();
         let extends = |t: &f64| !(0.36..0.44).contains(t);
         let inputs = PlantInputs {
