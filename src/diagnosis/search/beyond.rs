@@ -94,3 +94,56 @@ impl Search<'_> {
         untried.take(MOST).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnosis::fit::free::{Free, Prior};
+    use crate::diagnosis::test_evidence::{evidence_of, plant, search};
+    use crate::effects::{CATALOGUE, Coordinate, NUMBERS_OFF};
+    use crate::plant::registry::SUPPLY_ORIFICE;
+
+    /// A law of the list was stated beside an orifice at the end of its tolerance, "and nothing beyond it was tried": at no more than 90 % where it was right, and at that where the
+    /// orifice alone was off.
+    #[test]
+    fn a_number_at_the_end_of_its_tolerance_is_tried_beyond_it() {
+        for (factor, tried) in [(0.85, true), (0.99, false)] {
+            let mut truth = plant();
+            truth.device.supply_orifice *= factor;
+            let evidence = evidence_of(&truth, vec![vec![1.5e5; 126], vec![2.5e5; 126]]);
+            let mean = plant().device.supply_orifice;
+            let mut search = search(&evidence);
+            search.tolerated = vec![Free {
+                quantity: SUPPLY_ORIFICE.quantity(),
+                start: mean,
+                coordinate: Coordinate::Logarithmic,
+                bounds: [0.95 * mean, 1.05 * mean],
+                prior: Prior::Normal {
+                    mean,
+                    deviation: 0.025 * mean,
+                },
+            }];
+            search.candidates = CATALOGUE.iter().chain(&NUMBERS_OFF).collect();
+            let spring = search.candidates.iter().copied();
+            let spring = spring.filter(|e| e.name == "return_spring_load").collect();
+            let only = Search {
+                candidates: spring,
+                ..search.clone()
+            };
+            let nominal = search.baseline();
+            let rough = only.screen(&nominal, ROUGH, f64::INFINITY).swap_remove(0);
+            let mut full = vec![search.refit(&rough, Refit::FULL)];
+            search.add_beyond(&mut full, (&nominal, &[]), &mut |_| ());
+            let names: Vec<Vec<&str>> = full.iter().map(Hypothesis::names).collect();
+            match tried {
+                true => {
+                    assert_eq!(names[0], ["supply_restriction"], "{names:?}");
+                    let orifice = full[0].fit.values[0] / truth.device.supply_orifice;
+                    assert!((orifice - 1.0).abs() < 1e-3, "{orifice}");
+                    assert_eq!(names.len(), 3, "{names:?}");
+                }
+                false => assert_eq!(names, [["return_spring_load"]]),
+            }
+        }
+    }
+}
