@@ -276,7 +276,7 @@ impl<'a> Replay<'a> {
     fn parts(&self, span: Span, flexes: bool) -> usize {
         let longest = [
             (flexes, self.usual / FLEXING_PARTS),
-            (self.plant.has_terms(), TERMS_HELD),
+            (self.plant.has_fast_terms(), TERMS_HELD),
             (self.plant.sensors.is_late(), LOAD_CELL_EVERY),
         ];
         let longest = longest.into_iter().filter(|(applies, _)| *applies);
@@ -453,7 +453,7 @@ fn on_its_way(
     (motion, state)
 }
 
-/// Time over which terms are held at most [s]: chambers fill within a few milliseconds.
+/// Time over which terms of what changes fast are held at most [s]: chambers fill within a few milliseconds.
 const TERMS_HELD: f64 = 5e-4;
 /// Time between the forces that a late or slow load cell feels at most [s]: a contact begins and ends within a few milliseconds.
 const LOAD_CELL_EVERY: f64 = 1.25e-4;

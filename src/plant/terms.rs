@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 
 use super::latent::Latent;
-use super::moment::Moment;
-use super::own_law::OwnLaw;
+use super::moment::{Moment, Variable};
+use super::own_law::{LawText, OwnLaw};
 use super::parameters::PlantParameters;
 use super::port::Port;
 use crate::device::{DeviceParameters, Disturbance, PistonMotion};
@@ -49,6 +49,36 @@ impl PlantParameters {
     /// Whether anything acts at any port.
     pub fn has_terms(&self) -> bool {
         self.latent.is_some() || self.own.iter().any(|law| law.acts)
+    }
+
+    /// Whether a term depends on what changes within milliseconds, and is held over a step: what it says in the middle of one is known of time, inputs and stroke alone. Of a
+    /// force on the piston the speed is followed too; what is added to a reading acts on nothing.
+    pub fn has_fast_terms(&self) -> bool {
+        let acts = |port: Port| {
+            ![
+                Port::PressureReading,
+                Port::StrokeReading,
+                Port::ForceReading,
+            ]
+            .contains(&port)
+        };
+        let fast = |port: Port, variable: Variable| match variable {
+            Variable::Time | Variable::Stroke | Variable::SetPressure | Variable::Surface => false,
+            Variable::Velocity => port != Port::PistonForce,
+            Variable::ChamberPressure
+            | Variable::PressureDifference
+            | Variable::MassFlow
+            | Variable::ContactForce => true,
+        };
+        let of_law = |law: &LawText| {
+            let mut all = Variable::ALL.into_iter();
+            acts(law.port) && all.any(|variable| fast(law.port, variable) && law.uses(variable))
+        };
+        let latent = self.latent.iter().any(|latent| match latent.formula() {
+            Some(formula) => of_law(&formula.law),
+            None => acts(latent.port) && fast(latent.port, latent.variable),
+        });
+        latent || self.own.iter().any(|own| own.acts && of_law(&own.text))
     }
 
     /// Sum of the terms at a port at a moment, in the port's unit.

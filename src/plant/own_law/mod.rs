@@ -17,6 +17,10 @@ pub use names::kept_name;
 pub use unit::Unit;
 
 use super::moment::Moment;
+use super::moment::Variable::{
+    self, ChamberPressure, ContactForce, MassFlow, PressureDifference, SetPressure, Stroke,
+    Surface, Time, Velocity,
+};
 use super::port::Port;
 
 /// A variable: its symbol, what it is, its unit, where it lies [SI], its value.
@@ -29,21 +33,23 @@ pub struct Symbol {
     pub unit: &'static str,
     /// Least and largest value of devices that there are [SI].
     pub range: [f64; 2],
+    /// Variables of a term that it is a part of.
+    variables: &'static [Variable],
     value: fn(&Moment) -> f64,
 }
 
 /// The variables of an expression.
 #[rustfmt::skip] // A table: one variable a line.
 pub const SYMBOLS: [Symbol; 9] = [
-    symbol("t", "time since the start", "s", [0.0, 60.0], |m| m.time),
-    symbol("x", "stroke from the retracted end", "m", [0.0, 0.05], |m| m.stroke),
-    symbol("v", "speed of extension", "m/s", [-0.5, 0.5], |m| m.speed),
-    symbol("p1", "pressure in chamber 1, absolute", "Pa", [1e5, 8e5], |m| m.pressures[0]),
-    symbol("p2", "pressure in chamber 2, absolute", "Pa", [1e5, 8e5], |m| m.pressures[1]),
-    symbol("q", "air that enters", "kg/s", [-1e-3, 1e-3], |m| m.mass_flow),
-    symbol("p_set", "set pressure, gauge", "Pa", [0.0, 6e5], |m| m.set_pressure),
-    symbol("x_s", "where the surface stands along the stroke", "m", [0.0, 0.05], |m| if m.surface.is_finite() { m.surface } else { 0.0 }),
-    symbol("f", "contact force", "N", [0.0, 500.0], |m| m.contact_force),
+    symbol("t", "time since the start", "s", [0.0, 60.0], &[Time], |m| m.time),
+    symbol("x", "stroke from the retracted end", "m", [0.0, 0.05], &[Stroke], |m| m.stroke),
+    symbol("v", "speed of extension", "m/s", [-0.5, 0.5], &[Velocity], |m| m.speed),
+    symbol("p1", "pressure in chamber 1, absolute", "Pa", [1e5, 8e5], &[ChamberPressure, PressureDifference], |m| m.pressures[0]),
+    symbol("p2", "pressure in chamber 2, absolute", "Pa", [1e5, 8e5], &[PressureDifference], |m| m.pressures[1]),
+    symbol("q", "air that enters", "kg/s", [-1e-3, 1e-3], &[MassFlow], |m| m.mass_flow),
+    symbol("p_set", "set pressure, gauge", "Pa", [0.0, 6e5], &[SetPressure], |m| m.set_pressure),
+    symbol("x_s", "where the surface stands along the stroke", "m", [0.0, 0.05], &[Surface], |m| if m.surface.is_finite() { m.surface } else { 0.0 }),
+    symbol("f", "contact force", "N", [0.0, 500.0], &[ContactForce], |m| m.contact_force),
 ];
 
 const fn symbol(
@@ -51,6 +57,7 @@ const fn symbol(
     meaning: &'static str,
     unit: &'static str,
     range: [f64; 2],
+    variables: &'static [Variable],
     value: fn(&Moment) -> f64,
 ) -> Symbol {
     Symbol {
@@ -58,6 +65,7 @@ const fn symbol(
         meaning,
         unit,
         range,
+        variables,
         value,
     }
 }
@@ -123,6 +131,14 @@ impl LawText {
     /// Whether a constant is that stiffness, which stands in no expression.
     pub fn is_bristle_stiffness(&self, constant: &Constant) -> bool {
         self.port == Port::Friction && constant.name == BRISTLE_STIFFNESS
+    }
+
+    /// Whether a variable is in its expression.
+    pub fn uses(&self, variable: Variable) -> bool {
+        let mut symbols = SYMBOLS.iter().enumerate();
+        symbols.any(|(place, symbol)| {
+            symbol.variables.contains(&variable) && self.expression.uses(place)
+        })
     }
 
     /// Its value at a moment, in the unit of its port, of values of its constants, the first ones at least; nothing where it is not finite.
@@ -284,8 +300,7 @@ impl OwnLaw {
 
     /// Whether it needs to know where the surface stands.
     pub fn uses_surface(&self) -> bool {
-        let place = SYMBOLS.iter().position(|symbol| symbol.name == "x_s");
-        place.is_some_and(|place| self.text.expression.uses(place))
+        self.text.uses(Surface)
     }
 }
 
