@@ -59,7 +59,7 @@ pub fn readings(
             .collect()
     };
     let cell = &truth.load_cell;
-    let force = match sensors.is_late() && !cell.time.is_empty() {
+    let force = match sensors.is_late() && cell.is_known() {
         true => {
             let force = along(&cell.contact_force, &cell.share);
             let read = sensors.force_readings(&cell.time, &force, &cell.acceleration);
@@ -257,7 +257,7 @@ impl<'a> Replay<'a> {
                 let outlet = |now| self.plant.term(Port::OutletPressure, &now);
                 truth.note(&rig.device, &felt(), moment.map_or(0.0, outlet));
             }
-            if self.plant.sensors.is_late() {
+            if self.is_felt_late() {
                 truth
                     .load_cell
                     .note(inputs.time[i] + start, &felt(), part == 0);
@@ -272,12 +272,17 @@ impl<'a> Replay<'a> {
         }
     }
 
+    /// Whether a late load cell is followed between the samples: where the piston is held to a measured motion errors in time are forgiven.
+    fn is_felt_late(&self) -> bool {
+        self.plant.sensors.is_late() && self.nudging.is_none()
+    }
+
     /// Steps into which a span is cut, of an arm that flexes or another; over a gap in the recording the inputs are held, in steps of the usual length.
     fn parts(&self, span: Span, flexes: bool) -> usize {
         let longest = [
             (flexes, self.usual / FLEXING_PARTS),
             (self.plant.has_fast_terms(), TERMS_HELD),
-            (self.plant.sensors.is_late(), LOAD_CELL_EVERY),
+            (self.is_felt_late(), LOAD_CELL_EVERY),
         ];
         let longest = longest.into_iter().filter(|(applies, _)| *applies);
         let longest = longest.fold(self.usual, |least, (_, step)| least.min(step));

@@ -42,7 +42,7 @@ pub struct Trajectory {
     pub hold_force: Vec<f64>,
     /// Share of the contact force along the stroke [1].
     pub share: Vec<f64>,
-    /// What a late or slow load cell feels between the samples; empty of another.
+    /// What a late or slow load cell feels between the samples; empty of another, and of a piston that is held to a measured motion.
     pub load_cell: LoadCellSignal,
 }
 
@@ -59,6 +59,13 @@ pub struct LoadCellSignal {
     pub acceleration: Vec<f64>,
     /// Places of the samples among them.
     pub samples: Vec<usize>,
+}
+
+impl LoadCellSignal {
+    /// Whether it was simulated.
+    pub fn is_known(&self) -> bool {
+        !self.samples.is_empty()
+    }
 }
 
 impl Trajectory {
