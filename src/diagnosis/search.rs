@@ -98,6 +98,12 @@ impl Search<'_> {
         }
     }
 
+    /// Whether the recordings are of a cell, in which a simulation takes long.
+    pub(super) fn is_in_cell(&self) -> bool {
+        let mut recordings = self.evidence.recordings.iter();
+        recordings.any(|recording| recording.inputs.cell.is_some())
+    }
+
     /// A checkpoint: whether the search is to end with the best that it has ([`super::effort`]).
     pub(super) fn is_spent(&self) -> bool {
         self.evidence.effort.is_spent()

@@ -134,6 +134,12 @@ impl Effect {
         (self.parameters)(plant, self.index())
     }
 
+    /// Whether a quantity is one of its numbers.
+    pub fn frees(&self, plant: &PlantParameters, quantity: &Quantity) -> bool {
+        let parameters = self.parameters(plant);
+        parameters.iter().any(|own| own.quantity.is(quantity))
+    }
+
     /// Its numbers at a size that devices and cells usually show, beside their nominal values; all of them, in that order.
     pub fn usual(&self, plant: &PlantParameters) -> Vec<f64> {
         (self.usual)(plant, self.index())

@@ -36,7 +36,7 @@ pub struct Trajectory {
     pub contact_force: Vec<f64>,
     /// Pressures of chambers 1 and 2 [Pa absolute].
     pub pressures: [Vec<f64>; 2],
-    /// Air that came in since the sample before [kg/s].
+    /// Air that came in over the last step [kg/s].
     pub mass_flow: Vec<f64>,
     /// Force that held the piston to a measured motion [N]; none where nothing did.
     pub hold_force: Vec<f64>,

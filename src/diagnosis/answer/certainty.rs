@@ -241,10 +241,7 @@ impl Diagnosis {
         let untried = at_end.filter(|number| {
             let mut own = free.iter().filter(|f| f.quantity.name == number.name);
             let Some(own) = own.next() else { return false };
-            let frees = |e: &&Effect| {
-                let parameters = e.parameters(&self.nominal);
-                parameters.iter().any(|p| p.quantity.is(&own.quantity))
-            };
+            let frees = |e: &&Effect| e.frees(&self.nominal, &own.quantity);
             let beyond: Vec<&str> = (every().chain(LINK_EFFECTS).chain(&NUMBERS_OFF))
                 .filter(frees)
                 .map(|e| e.name)

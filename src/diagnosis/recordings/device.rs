@@ -122,3 +122,22 @@ impl Subject for Device {
         &simulated.readings
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::diagnosis::test_evidence::{evidence_of, plant};
+
+    /// A trajectory that was simulated for a load cell in time does not say what a late one feels between the samples.
+    #[test]
+    fn a_late_load_cell_reads_the_same_whatever_was_simulated_before() {
+        let evidence = evidence_of(&plant(), vec![vec![2e5; 126]]);
+        let in_time = evidence.predict(&plant(), false, None);
+        for late in [[1.5e-3, 0.0], [0.0, 5.1e-3]] {
+            let mut plant = plant();
+            [plant.sensors.force_lag, plant.sensors.force_delay] = late;
+            let anew = evidence.predict(&plant, false, None);
+            let from_known = evidence.predict(&plant, false, Some(&in_time));
+            assert_eq!(from_known.residuals, anew.residuals, "{late:?}");
+        }
+    }
+}

@@ -8,7 +8,7 @@ use crate::diagnosis::answer::estimate::Limit as EndOfRange;
 use crate::diagnosis::fit::hypothesis::Hypothesis;
 use crate::diagnosis::fit::{FINEST, ROUGH, Refit, Start};
 use crate::effects::Effect;
-use crate::plant::{DeviceParts, Quantity};
+use crate::plant::DeviceParts;
 
 /// Numbers that are tried beyond their tolerance, at most.
 const MOST: usize = 3;
@@ -23,13 +23,7 @@ impl Search<'_> {
         (nominal, rough): (&Hypothesis, &[Hypothesis]),
         observer: &mut Observer<'_>,
     ) {
-        if self.nominal.parts != DeviceParts::Whole
-            || self
-                .evidence
-                .recordings
-                .iter()
-                .any(|r| r.inputs.cell.is_some())
-        {
+        if self.nominal.parts != DeviceParts::Whole || self.is_in_cell() {
             return;
         }
         for effect in self.untried(full, rough) {
@@ -62,8 +56,9 @@ impl Search<'_> {
                     .as_ref()
                     .is_some_and(|h| better(h) && self.predicts_better(h, &best, observer));
             for (h, leads) in [(beside, leads_beside), (alone, leads_alone)] {
-                let at = if leads { 0 } else { full.len() };
-                full.splice(at..at, h);
+                if let Some(h) = h {
+                    full.insert(if leads { 0 } else { full.len() }, h);
+                }
             }
             full[1..].sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
         }
@@ -74,21 +69,21 @@ impl Search<'_> {
         let Some(best) = full.first() else {
             return Vec::new();
         };
-        let frees = |effect: &Effect, quantity: &Quantity| {
-            let parameters = effect.parameters(&self.nominal);
-            parameters.iter().any(|p| p.quantity.is(quantity))
-        };
         let numbers = best.fit.free.iter().zip(&best.fit.values);
         let at_end = numbers
             .take(best.tolerated(&self.nominal))
             .filter(|(free, value)| EndOfRange::of(free, **value).is_some());
         let untried = at_end.filter_map(|(free, _)| {
-            let is_tried = |h: &Hypothesis| h.effects.iter().any(|e| frees(e, &free.quantity));
+            let is_tried = |h: &Hypothesis| {
+                h.effects
+                    .iter()
+                    .any(|e| e.frees(&self.nominal, &free.quantity))
+            };
             if full.iter().chain(rough).any(is_tried) {
                 return None;
             }
             let candidates = self.candidates.iter().copied();
-            let able = candidates.filter(|effect| frees(effect, &free.quantity));
+            let able = candidates.filter(|effect| effect.frees(&self.nominal, &free.quantity));
             able.min_by_key(|effect| effect.parameters(&self.nominal).len())
         });
         untried.take(MOST).collect()

@@ -60,8 +60,7 @@ impl Search<'_> {
             climb.levels.get(1).map(|level| &level[0]),
         );
         // In a cell a curve costs minutes.
-        let in_cell = (self.evidence.recordings.iter()).any(|r| r.inputs.cell.is_some());
-        let asks = !in_cell && !climb.asked.contains(&none.names()) && !self.is_spent();
+        let asks = !self.is_in_cell() && !climb.asked.contains(&none.names()) && !self.is_spent();
         let Some(single) = single.filter(|_| asks) else {
             return;
         };
