@@ -331,6 +331,7 @@ class Examination:
             if chance > 0.999:
                 text = text.replace("above 99.9 %", " ")
             text = self.take(where, text, rf"Probability (?P<chance>{NUMBER}) %", lambda m: {"chance": min((100 * e["confidence"] for e in of.json["effects"]), key=lambda c: abs(c - float(m.group("chance"))))})
+        text = re.sub(r"[A-Z][^.:]*: probability [^.]*?\d+\.\d %, whichever of its laws it is; of these .*? %\.(?= |$)", lambda m: self.family(where, m.group(0)), text)
         if share is not None:
             known = [share] + [n.get("share_explained") for e in of.json["effects"] for n in (e.get("nearest") or {}).get("effects", [])]
             nearest = lambda m: min((100 * s for s in known if s is not None), key=lambda s: abs(s - float(m.group("share"))))
@@ -355,6 +356,21 @@ class Examination:
             return  # A part of the device or a model discrepancy: its own numbers are those of diagnosis.json.
         if re.search(r"(?<![A-Za-z_])\d", re.sub(r"\w+_\w+", " ", text)):
             self.check.uncovered(where, text)
+
+    def family(self, where, sentence):
+        """A family's sentence: its probability, those of its laws, none of them above the family's."""
+        family = next(f for f in self.of.json.get("families", []) if sentence.lower().startswith(f"{f['words'].lower()}:"))
+        known = [family["probability"]] + [m["probability"] for m in family["members"]]
+        printed = re.findall(rf"above 99\.9 %|{NUMBER} %", sentence)
+        self.check.fact(f"{where}: probabilities of `{sentence}`", len(printed), len(known))
+        for text, value in zip(printed, known):
+            if text.startswith("above"):
+                self.check.fact(f"{where}: {text}", value > 0.999, True)
+            else:
+                self.number(f"{where}: `{sentence}`", text.removesuffix(" %"), 100 * value)
+        self.check.fact(f"{where}: no law is surer than its family", max(known) <= known[0] + 1e-12, True)
+        self.check.fact(f"{where}: laws of a family exclude one another", sum(known[1:]) <= known[0] + 1e-9, True)
+        return " "
 
     # report.html, diagnosis.rrd
 
