@@ -3,6 +3,9 @@
 use std::path::Path;
 use std::time::Duration;
 
+use glam::DVec3;
+use glamx::DPose3;
+use idc_cell::arm::kinematics::link_poses;
 use idc_cell::plant::{PlantParameters, simulate};
 use idc_cell::recording::csv::read_cell_csv;
 use idc_cell::replay::LoadedCell;
@@ -52,7 +55,11 @@ fn motion(time: &[f64], joint: &[f64]) -> [f64; 2] {
 /// By the samples of what is asked for: every posture is one of the recording, no joint is faster than there, and the cell as it truly is keeps the force.
 #[test]
 fn an_experiment_of_a_cell_stays_on_the_path_of_its_recordings() {
-    let limits = "\n[limits]\nforce_n = 300.0\nset_pressure_pa = 110000.0\nduration_s = 6\n";
+    let torques = "joint_torque_n_m = [900, 900, 900, 300, 300, 300]";
+    let limits = format!(
+        "\n[limits]\nforce_n = 300.0\nset_pressure_pa = 110000.0\nduration_s = 6\n{torques}\n"
+    );
+    let limits = limits.as_str();
     let (bench, cell, planted) = begun(limits);
     let words = [
         "next",
@@ -111,9 +118,47 @@ fn an_experiment_of_a_cell_stays_on_the_path_of_its_recordings() {
         .contact_force;
     let force = force.into_iter().fold(0.0, f64::max);
     assert!(force <= 300.0, "{force}");
+    let next = bench.path("next/next.json");
+    let next: serde_json::Value =
+        serde_json::from_str(&std::fs::read_to_string(next).unwrap()).unwrap();
+    let share = next["largest_torque_share_percent"].as_f64().unwrap();
+    assert!(share > 5.0 && share < 100.0, "{share}");
+    let page = std::fs::read_to_string(bench.path("next/report.html")).unwrap();
+    assert!(page.contains("of the torque that it may"), "{page}");
     let instructions = std::fs::read_to_string(bench.path("next/instructions.txt")).unwrap();
     assert!(instructions.contains("along the edge"), "{instructions}");
     assert!(!instructions.contains("valve"), "{instructions}");
+    // Drives that may not even hold the arm; one torque too few.
+    for (torques, said) in [
+        (
+            "[1, 1, 1, 1, 1, 1]",
+            "more than `joint_torque_n_m`, at least for",
+        ),
+        (
+            "[900, 900]",
+            "`limits.joint_torque_n_m` has 2 values, expected 6",
+        ),
+    ] {
+        bench.write(
+            "weak.toml",
+            format!("{CELL}\n[limits]\njoint_torque_n_m = {torques}\n"),
+        );
+        let words = [
+            "next",
+            "rides",
+            "--scenario",
+            "weak.toml",
+            "--out",
+            "weak",
+            "--programmes",
+            "4",
+            "--quiet",
+        ];
+        let refused = bench.idc(&words, &[]);
+        assert_eq!(refused.code, 2);
+        assert!(refused.err.contains(said), "{}", refused.err);
+        assert!(!bench.path("weak/next.json").exists());
+    }
     // Nothing that a cell has may be moved.
     let words = [
         "next",
@@ -217,4 +262,71 @@ fn a_cell_is_asked_until_nothing_would_tell_more() {
         ride.path.windows(2).any(|two| two[0] != two[1]),
         "{record:#}"
     );
+}
+
+/// Holding torques of an arm that rests and presses, by virtual work: what the drives give is the slope of the bodies' height and of the way of the point of contact
+/// against the force on it, with friction in full.
+#[test]
+fn the_torque_that_a_ride_asks_for_is_that_of_virtual_work() {
+    let (_bench, cell, planted) = begun("");
+    let (ride, _) = inputs(&cell, &planted, &PROGRAMS[0]);
+    let at = ride.time.len() / 2;
+    let count = 5;
+    let rests = Commands {
+        time: (0..count).map(|i| 0.004 * f64::from(i)).collect(),
+        path: vec![ride.path[at]; count as usize],
+        joints: (ride.joints.iter())
+            .map(|joint| vec![joint[at]; count as usize])
+            .collect(),
+        set_pressure: vec![1e5; count as usize],
+    };
+    let held = carried_out(&cell, &planted, &rests);
+    let trajectory = held.cell.as_ref().unwrap();
+    let (stroke, pressed, friction) = (0.02, 180.0, 3.0);
+    let touched = (vec![stroke; count as usize], vec![pressed; count as usize]);
+    let contact = &cell.tool_contacts(trajectory, &touched.0, &touched.1, 0.0)[2];
+    let chain = &cell.chain;
+    let base = cell.scenario.arm.world_from_base;
+    let nominal = &cell.scenario.nominal;
+    let q: Vec<f64> = rests.joints.iter().map(|joint| joint[0]).collect();
+    let poses = |q: &[f64]| {
+        let mut poses = vec![DPose3::IDENTITY; q.len()];
+        link_poses(chain, base, q, &mut poses);
+        poses
+    };
+    // Of the point of contact in the last link, from the posture of the sample.
+    let last = poses(&q)[q.len() - 1];
+    let centre = trajectory.ball[2] + trajectory.slide[2] * stroke;
+    let point = last.inverse() * (centre + contact.from_centre);
+    let slide = last.rotation.inverse() * trajectory.slide[2];
+    let mass_at = last.inverse() * centre - slide * trajectory.mass_behind_ball;
+    let work = |q: &[f64]| {
+        let poses = poses(q);
+        let weight = |mass: f64, at: DVec3| -mass * cell.scenario.gravity.dot(at);
+        let bodies = chain.joints.iter().zip(&poses);
+        let links: f64 = bodies
+            .map(|(joint, pose)| weight(joint.body.mass, *pose * joint.body.centre_of_mass))
+            .sum();
+        let end = poses[poses.len() - 1];
+        links + weight(nominal.device.moving_mass, end * mass_at) - contact.force.dot(end * point)
+    };
+    let step = 1e-6;
+    for joint in 0..q.len() {
+        let moved = |by: f64| {
+            let mut moved = q.clone();
+            moved[joint] += by;
+            work(&moved)
+        };
+        let expected = ((moved(step) - moved(-step)) / (2.0 * step)).abs() + friction;
+        let mut most = vec![1e12; q.len()];
+        most[joint] = 50.0;
+        let frictions = vec![friction; q.len()];
+        let found =
+            50.0 * cell.torque_share(trajectory, (&touched.0, &touched.1), &frictions, &most);
+        assert!(
+            (found / expected - 1.0).abs() < 1e-3,
+            "joint {}: {found} {expected}",
+            joint + 1
+        );
+    }
 }

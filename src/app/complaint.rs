@@ -165,6 +165,7 @@ fn location_of_run(error: &RunError) -> Option<Location> {
                 .find_map(|key| of_key(file, &format!("workpiece.edge.{key}")))
         }
         CellError::JointStiffness { file, .. } => of_key(file, "joints.stiffness_n_m_per_rad"),
+        CellError::JointTorque { file, .. } => of_key(file, "limits.joint_torque_n_m"),
         CellError::Supply { file, .. } | CellError::Weight { file, .. } => {
             of_key(file, "process.force_n")
         }

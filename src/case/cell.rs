@@ -53,10 +53,23 @@ pub(super) struct CellCase {
 impl CellCase {
     /// How far an experiment may move the arm; none where it stood still in all recordings.
     pub fn arm_reach(&self, cell: &LoadedCell) -> Option<ArmReach> {
-        let stated = cell.scenario.limits.joint_motion;
-        let (cell, bandwidth) = (cell.clone(), self.bandwidth);
-        let replay = move |commands: ArmCommands| inputs(&cell, commands, None, bandwidth);
-        ArmReach::new(self.courses.clone(), stated, Arc::new(replay))
+        let limits = &cell.scenario.limits;
+        let (of_replay, bandwidth) = (cell.clone(), self.bandwidth);
+        let replay = move |commands: ArmCommands| inputs(&of_replay, commands, None, bandwidth);
+        let reach = ArmReach::new(self.courses.clone(), limits.joint_motion, Arc::new(replay))?;
+        let Some(torques) = limits.joint_torque.clone() else {
+            return Some(reach);
+        };
+        let cell = cell.clone();
+        let share =
+            move |plant: &PlantParameters, inputs: &PlantInputs, touched: (&[f64], &[f64])| {
+                let friction = &plant.cell.joint_friction;
+                let trajectory = inputs.cell.as_ref();
+                trajectory.map_or(0.0, |own| {
+                    cell.torque_share(own, touched, friction, &torques)
+                })
+            };
+        Some(reach.with_torques(Arc::new(share)))
     }
 }
 

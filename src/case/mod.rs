@@ -312,8 +312,8 @@ impl Case {
     #[must_use]
     pub fn operating_limits(&self) -> Option<OperatingLimits> {
         match &self.kind {
-            Kind::Cell { cell, .. } => Some(cell.scenario.limits),
-            _ => self.bench_rig().map(|rig| rig.limits),
+            Kind::Cell { cell, .. } => Some(cell.scenario.limits.clone()),
+            _ => self.bench_rig().map(|rig| rig.limits.clone()),
         }
     }
 

@@ -33,6 +33,16 @@ pub enum CellError {
         /// Number of joints of the arm.
         axes: usize,
     },
+    /// Another number of largest torques than of joints.
+    #[error("{}: `limits.joint_torque_n_m` has {found} values, expected {axes}, one for each of the arm's joints", file.display())]
+    JointTorque {
+        /// Scenario file.
+        file: PathBuf,
+        /// Number that it gives.
+        found: usize,
+        /// Number of joints of the arm.
+        axes: usize,
+    },
     /// A joint that slides in an arm that is to be replayed.
     #[error("{}: joint `{joint}` slides, expected joints that turn: recordings of a cell are replayed for such arms alone", file.display())]
     SlidingJoint {

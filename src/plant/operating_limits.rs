@@ -1,7 +1,7 @@
 //! How far the owner of a rig lets it be moved.
 
 /// Limits as a file states them; none where it states nothing.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct OperatingLimits {
     /// Largest set pressure [Pa gauge].
     pub set_pressure: Option<f64>,
@@ -25,4 +25,6 @@ pub struct OperatingLimits {
     pub duration: Option<f64>,
     /// Largest speed [rad/s] and acceleration [rad/s2] of the joints of a cell's arm.
     pub joint_motion: [Option<f64>; 2],
+    /// Largest torque of each drive of that arm, base first [N m].
+    pub joint_torque: Option<Vec<f64>>,
 }

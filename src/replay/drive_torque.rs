@@ -67,8 +67,13 @@ impl LoadedCell {
             if touches && trajectory.rests(i) {
                 continue;
             }
-            let pressed = if touches { force[i] } else { 0.0 };
-            let load = self.torques_at(trajectory, i, stroke[i], pressed);
+            let touching = touching_at(trajectory, i, stroke[i]);
+            let pressed = if touches {
+                force[i] / -touching.normal.dot(trajectory.slide[i])
+            } else {
+                0.0
+            };
+            let load = self.torques_at(trajectory, i, stroke[i], (&touching, pressed));
             for (j, drive) in drives.iter_mut().enumerate() {
                 if let (Some(drive), Some(torque)) = (drive, &torques[j])
                     && torque[i].is_finite()
@@ -83,8 +88,33 @@ impl LoadedCell {
         drives
     }
 
-    /// Speeds of the motors and what their drives have to give at a sample, at a stroke [m] and a force along the slide [N].
-    fn torques_at(&self, trajectory: &ArmTrajectory, i: usize, stroke: f64, force: f64) -> Load {
+    /// Largest share of the torque that a drive may give, over the drives and the samples of a motion: strokes [m] and contact forces [N] by sample; dry friction
+    /// of a drive is counted in full, `limits` are the largest torques [N m].
+    pub fn torque_share(
+        &self,
+        trajectory: &ArmTrajectory,
+        (stroke, force): (&[f64], &[f64]),
+        friction: &[f64],
+        limits: &[f64],
+    ) -> f64 {
+        let inner = 1..trajectory.len().saturating_sub(1);
+        let shares = inner.flat_map(|i| {
+            let touching = touching_at(trajectory, i, stroke[i]);
+            let load = self.torques_at(trajectory, i, stroke[i], (&touching, force[i]));
+            let drives = load.torques.into_iter().zip(friction).zip(limits);
+            drives.map(|((torque, friction), most)| (torque.abs() + friction) / most)
+        });
+        shares.fold(0.0, f64::max)
+    }
+
+    /// Speeds of the motors and what their drives have to give at a sample, at a stroke [m] and a contact force [N].
+    fn torques_at(
+        &self,
+        trajectory: &ArmTrajectory,
+        i: usize,
+        stroke: f64,
+        (touching, pressed): (&Touching, f64),
+    ) -> Load {
         let span = trajectory.time[i + 1] - trajectory.time[i - 1];
         let joints = &trajectory.joints;
         let q: Vec<f64> = joints.iter().map(|j| j.angle[i]).collect();
@@ -107,9 +137,8 @@ impl LoadedCell {
             centre,
             normal,
             sliding,
-        } = touching_at(trajectory, i, stroke);
+        } = *touching;
         let tangent = trajectory.edge[i].tangent;
-        let pressed = force / -normal.dot(trajectory.slide[i]);
         let drag = self.scenario.nominal.cell.friction * pressed * sliding;
         let across = tangent.cross(normal);
         let on_tool = [normal * pressed, across * pressed, -tangent * drag];

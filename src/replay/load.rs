@@ -57,6 +57,15 @@ impl LoadedCell {
                 axes,
             });
         }
+        if let Some(torques) = &scenario.limits.joint_torque
+            && torques.len() != axes
+        {
+            return Err(CellError::JointTorque {
+                file: scenario.path.clone(),
+                found: torques.len(),
+                axes,
+            });
+        }
         let slides = |joint: &&crate::arm::chain::Joint| joint.kind == JointKind::Prismatic;
         if let Some(joint) = arm.chain.joints.iter().find(slides) {
             return Err(CellError::SlidingJoint {

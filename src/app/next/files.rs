@@ -149,6 +149,7 @@ pub(super) fn json(proposal: &Proposal) -> Value {
         chosen,
         ..
     } = proposal;
+    let share = chosen.extremes.torque_share;
     let explanations: Vec<Value> = (open.iter().zip(&chosen.expected.odds))
         .map(|(own, odds)| {
             let then = odds
@@ -171,6 +172,7 @@ pub(super) fn json(proposal: &Proposal) -> Value {
         "information_on_how_much_nat": round(chosen.expected.how_much),
         "largest_force_n": (chosen.extremes.force * 10.0).round() / 10.0,
         "largest_stroke_m": (chosen.extremes.stroke * 1e4).round() / 1e4,
+        "largest_torque_share_percent": (share > 0.0).then(|| (share * 1e3).round() / 10.0),
         "instructions": chosen.programme.instructions(&proposal.limits),
         "left_open": proposal.left_open(),
     })

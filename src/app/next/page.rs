@@ -51,11 +51,12 @@ pub(super) fn of_proposal(proposal: &Proposal, case: &str) -> Document<'static> 
         verdict,
         tone: if is_settled { Tone::Good } else { Tone::Open },
         lead: vec![format!(
-            "By draws of the numbers of every open explanation the part is pressed with no more than {:.0} N; {:.0} N are allowed. The tool extends by no more than {:.1} mm{}.",
+            "By draws of the numbers of every open explanation the part is pressed with no more than {:.0} N; {:.0} N are allowed. The tool extends by no more than {:.1} mm{}.{}",
             chosen.extremes.force,
             proposal.limits.force,
             chosen.extremes.stroke * 1e3,
             allowed_stroke(proposal.limits.stroke),
+            drives(chosen.extremes.torque_share),
         )],
         sections: vec![
             Section::new("Open explanations", of_open),
@@ -71,6 +72,17 @@ pub(super) fn of_proposal(proposal: &Proposal, case: &str) -> Document<'static> 
 fn allowed_stroke(stroke: f64) -> String {
     match stroke.is_finite() {
         true => format!("; {:.1} mm are allowed", stroke * 1e3),
+        false => String::new(),
+    }
+}
+
+/// What is said of the drives of an arm whose torque is limited, by the largest share of it [1].
+fn drives(share: f64) -> String {
+    match share > 0.0 {
+        true => format!(
+            " No drive of the arm gives more than {:.0} % of the torque that it may.",
+            100.0 * share
+        ),
         false => String::new(),
     }
 }

@@ -16,6 +16,7 @@ use rayon::prelude::*;
 use super::information::{Expected, Open, Outlook, Sensors, entropy, shares_of};
 use super::limits::{LimitError, Limits};
 use super::programme::Programme;
+use super::ride::ArmReach;
 use crate::diagnosis::fit::covariance::inverse;
 use crate::plant::{PlantInputs, PlantParameters, simulate};
 
@@ -82,6 +83,8 @@ pub struct Extremes {
     pub force: f64,
     /// Largest stroke [m].
     pub stroke: f64,
+    /// Largest share of the torque that a drive of a cell's arm may give; 0 where none is limited [1].
+    pub torque_share: f64,
 }
 
 impl Extremes {
@@ -89,6 +92,7 @@ impl Extremes {
         Self {
             force: of(self.force, other.force),
             stroke: of(self.stroke, other.stroke),
+            torque_share: of(self.torque_share, other.torque_share),
         }
     }
 }
@@ -118,6 +122,7 @@ pub fn choose(
         least: Extremes {
             force: f64::INFINITY,
             stroke: f64::INFINITY,
+            torque_share: f64::INFINITY,
         },
         most_on_numbers: 0.0,
     };
@@ -152,6 +157,9 @@ pub fn choose(
         None if least.stroke > limits.stroke => Err(LimitError::Stroke {
             most: limits.stroke,
             least: least.stroke,
+        }),
+        None if least.torque_share > 1.0 => Err(LimitError::Torque {
+            percent: 100.0 * least.torque_share,
         }),
         None => Err(LimitError::Force {
             most: limits.force,
@@ -200,9 +208,9 @@ impl Choice<'_> {
             return None;
         }
         // Of a programme that would be kept, whether it may be done.
-        let extremes = extremes_of(&self.plants, &inputs);
+        let extremes = extremes_of(&self.plants, &inputs, limits.arm.as_ref());
         self.least = self.least.combined(extremes, f64::min);
-        if extremes.stroke > limits.stroke {
+        if extremes.stroke > limits.stroke || extremes.torque_share > 1.0 {
             return None;
         }
         if extremes.force > limits.force {
@@ -222,10 +230,14 @@ impl Choice<'_> {
 
 /// What no draw of an explanation's numbers passes, over all explanations: of the largest value in each of the draws that are looked at their mean, and [`BEYOND`]
 /// times as far from it as the largest of them. Other draws are as many again, and half of such would pass the largest of these.
-fn extremes_of(plants: &[Vec<PlantParameters>], inputs: &PlantInputs) -> Extremes {
+fn extremes_of(
+    plants: &[Vec<PlantParameters>],
+    inputs: &PlantInputs,
+    arm: Option<&ArmReach>,
+) -> Extremes {
     let bounds = plants.iter().map(|draws| {
         let all: Vec<Extremes> = (draws.par_iter())
-            .map(|plant| largest(plant, inputs))
+            .map(|plant| largest(plant, inputs, arm))
             .collect();
         let bound = |of: fn(&Extremes) -> f64, spare: f64| {
             let mean = all.iter().map(of).sum::<f64>() / all.len() as f64;
@@ -235,22 +247,26 @@ fn extremes_of(plants: &[Vec<PlantParameters>], inputs: &PlantInputs) -> Extreme
         Extremes {
             force: bound(|own| own.force, SPARE),
             stroke: bound(|own| own.stroke, 1.0),
+            torque_share: bound(|own| own.torque_share, SPARE),
         }
     });
     let none = Extremes {
         force: 0.0,
         stroke: 0.0,
+        torque_share: 0.0,
     };
     bounds.fold(none, |all, own| all.combined(own, f64::max))
 }
 
-/// Largest force on the part and largest stroke.
-fn largest(plant: &PlantParameters, inputs: &PlantInputs) -> Extremes {
+/// How far a device goes.
+fn largest(plant: &PlantParameters, inputs: &PlantInputs, arm: Option<&ArmReach>) -> Extremes {
     let truth = simulate(plant, inputs).truth;
-    let most = |values: Vec<f64>| values.into_iter().fold(0.0, f64::max);
+    let most = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+    let touched = (&truth.stroke[..], &truth.contact_force[..]);
     Extremes {
-        force: most(truth.contact_force),
-        stroke: most(truth.stroke),
+        force: most(&truth.contact_force),
+        stroke: most(&truth.stroke),
+        torque_share: arm.map_or(0.0, |arm| arm.torque_share(plant, inputs, touched)),
     }
 }
 
@@ -439,7 +455,7 @@ mod tests {
             let inputs = found.programme.inputs(&gentle);
             let mut random = ChaCha8Rng::seed_from_u64(1_000_000 + seed);
             let forces: Vec<f64> = (open.iter().flat_map(|own| draws(own, &mut random)))
-                .map(|plant| super::largest(&plant, &inputs).force)
+                .map(|plant| super::largest(&plant, &inputs, None).force)
                 .collect();
             let largest = forces.into_iter().fold(0.0, f64::max);
             assert!(found.extremes.force <= gentle.force);

@@ -111,6 +111,14 @@ pub enum LimitError {
         /// The least of the largest strokes [m].
         least: f64,
     },
+    /// A drive would have to give more than it may.
+    #[error(
+        "every programme that was tried asks a drive of the arm for more than `joint_torque_n_m`, at least for {percent:.0} % of it; expected larger torques, or a smaller force, joint speed or acceleration, in [limits]"
+    )]
+    Torque {
+        /// The least of the largest shares [%].
+        percent: f64,
+    },
 }
 
 /// Shortest recording [s]: less is nothing that a person would set a rig up for.
@@ -364,6 +372,7 @@ mod tests {
             force: Some(12.0),
             duration: Some(3.0),
             joint_motion: [None; 2],
+            joint_torque: None,
         };
         let limits = Limits::new(&recorded(), &stated, Movable::ALL, (8.0, None)).unwrap();
         assert_eq!(limits.set_pressure, [0.0, 5e4]);

@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 use rand::Rng;
 
-use crate::plant::PlantInputs;
+use crate::plant::{PlantInputs, PlantParameters};
 
 /// Share of the largest speed below which an arm rests [1].
 const RESTS: f64 = 1e-3;
@@ -165,6 +165,9 @@ impl Course {
 /// Recordings' commands made into inputs of the plant.
 type Replay = dyn Fn(ArmCommands) -> PlantInputs + Send + Sync;
 
+/// Largest share of the torque that a drive may give, by a device, its inputs, and its strokes [m] and contact forces [N].
+type TorqueShare = dyn Fn(&PlantParameters, &PlantInputs, (&[f64], &[f64])) -> f64 + Send + Sync;
+
 /// How far an arm may be moved: along the courses of its recordings.
 #[derive(Clone)]
 pub struct ArmReach {
@@ -173,6 +176,8 @@ pub struct ArmReach {
     /// Largest speed [rad/s] and acceleration [rad/s2] of each joint.
     limits: Vec<[f64; 2]>,
     replay: Arc<Replay>,
+    /// None where no torque is limited.
+    torque_share: Option<Arc<TorqueShare>>,
 }
 
 impl std::fmt::Debug for ArmReach {
@@ -207,7 +212,27 @@ impl ArmReach {
             courses,
             limits,
             replay,
+            torque_share: None,
         })
+    }
+
+    /// The same with drives whose torque is limited.
+    #[must_use]
+    pub fn with_torques(mut self, share: Arc<TorqueShare>) -> Self {
+        self.torque_share = Some(share);
+        self
+    }
+
+    /// Largest share of the torque that a drive may give, by a device, its inputs, and its strokes [m] and contact forces [N]; 0 where none is limited [1].
+    #[must_use]
+    pub fn torque_share(
+        &self,
+        plant: &PlantParameters,
+        inputs: &PlantInputs,
+        touched: (&[f64], &[f64]),
+    ) -> f64 {
+        let share = self.torque_share.as_ref();
+        share.map_or(0.0, |share| share(plant, inputs, touched))
     }
 
     /// Inputs of the plant by what the arm is commanded.

@@ -75,6 +75,8 @@ keys! {
         joint_speed: Option<f64> = "joint_speed_rad_per_s" in 1e-4..=20.0;
         /// largest acceleration of a joint
         joint_acceleration: Option<f64> = "joint_acceleration_rad_per_s2" in 1e-4..=1000.0;
+        /// largest torque of each drive, base first, friction of the drives themselves counted
+        joint_torque: Option<Vec<f64>> = "joint_torque_n_m" in 1e-3..=1e6;
         /// largest force on the part
         force: Option<f64> = "force_n" in 0.0..=1e5;
         /// longest recording
@@ -84,7 +86,7 @@ keys! {
 
 impl CellLimitsKeys {
     /// As experiments take them.
-    pub fn limits(&self) -> OperatingLimits {
+    pub fn limits(self) -> OperatingLimits {
         OperatingLimits {
             set_pressure: self.set_pressure,
             set_pressure_rate: self.set_pressure_rate,
@@ -92,6 +94,7 @@ impl CellLimitsKeys {
             force: self.force,
             duration: self.duration,
             joint_motion: [self.joint_speed, self.joint_acceleration],
+            joint_torque: self.joint_torque,
             ..OperatingLimits::default()
         }
     }

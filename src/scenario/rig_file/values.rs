@@ -330,6 +330,7 @@ pub(super) fn limits(
         force: keys.force,
         duration: keys.duration,
         joint_motion: [None; 2],
+        joint_torque: None,
     })
 }
 
