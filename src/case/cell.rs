@@ -228,6 +228,7 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, CaseErr
                 .collect(),
             tried: None,
             data_faults: Vec::new(),
+            limits: scenario.limits.clone(),
             kept: Vec::new(),
             rate: scenario.sample_rate,
         },

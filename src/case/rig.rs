@@ -149,6 +149,7 @@ pub(super) fn input_of(rig: &RigFile, folder: &Path) -> Result<DiagnosisInput, C
         shown: Vec::new(),
         tried: None,
         data_faults: Vec::new(),
+        limits: rig.limits.clone(),
         kept: Vec::new(),
         rate: rig.rate,
     };

@@ -225,9 +225,11 @@ fn experiments(case: &DiagnosisInput, evidence: &Evidence, ranked: &[Ranked]) ->
     let of_bench = case.nominal.parts == DeviceParts::Whole
         && evidence.recordings.iter().all(|m| m.inputs.cell.is_none());
     match ranked {
-        [best, rival, ..] if of_bench => {
-            separations(evidence, &best.hypothesis.fit, &rival.hypothesis.fit)
-        }
+        [best, rival, ..] if of_bench => separations(
+            evidence,
+            &case.limits,
+            [&best.hypothesis.fit, &rival.hypothesis.fit],
+        ),
         _ => Vec::new(),
     }
 }

@@ -10,7 +10,7 @@ pub mod programme;
 pub mod ride;
 
 use super::recordings::evidence::Evidence;
-use crate::plant::{InitialState, PlantInputs, PlantParameters};
+use crate::plant::{InitialState, OperatingLimits, PlantInputs, PlantParameters};
 use std::f64::consts::TAU;
 
 /// An experiment.
@@ -23,6 +23,9 @@ pub struct Experiment {
     /// The same for the simulator.
     pub inputs: PlantInputs,
 }
+
+/// Travel of a surface that is worth a motion [m].
+const LEAST_TRAVEL: f64 = 5e-4;
 
 /// Behaviour of the device in its recordings.
 struct Reach {
@@ -37,7 +40,7 @@ struct Reach {
 }
 
 impl Reach {
-    fn new(evidence: &Evidence, plant: &PlantParameters) -> Self {
+    fn new(evidence: &Evidence, plant: &PlantParameters, limits: &OperatingLimits) -> Self {
         let inputs = || evidence.recordings.iter().map(|m| &m.inputs);
         let stroke = plant.device.full_stroke;
         let surfaces: Vec<f64> = inputs()
@@ -49,15 +52,23 @@ impl Reach {
         } else {
             surfaces.iter().sum::<f64>() / surfaces.len() as f64
         };
+        // As far as the owner lets it.
+        let [least, most] = limits.surface;
+        let [least, most] = [least.unwrap_or(0.0), most.unwrap_or(stroke)];
+        let middle = middle.min(most).max(least);
         let pressures = inputs().flat_map(|i| i.set_pressure.iter().copied());
         let steps = inputs().map(|i| crate::stats::median_step(&i.time));
         Self {
             step: steps.fold(f64::INFINITY, f64::min),
-            pressure: pressures.fold(0.0, f64::max),
+            pressure: pressures
+                .fold(0.0, f64::max)
+                .min(limits.set_pressure.unwrap_or(f64::INFINITY)),
             surface: middle,
             travel: (0.2 * stroke)
                 .min(0.8 * middle)
-                .min(0.8 * (stroke - middle)),
+                .min(0.8 * (stroke - middle))
+                .min(most - middle)
+                .min(middle - least),
         }
     }
 
@@ -95,12 +106,20 @@ fn first_half(time: f64, each: f64) -> bool {
 
 /// The experiments for a bench.
 #[must_use]
-pub fn experiments(evidence: &Evidence, plant: &PlantParameters) -> Vec<Experiment> {
-    let limits = Reach::new(evidence, plant);
-    let [ramp, steps, dwell] = limits.at_a_fixed_surface();
-    let [strokes, reversals] = limits.without_a_workpiece();
-    let [slow, fast] = limits.on_a_moved_surface();
-    vec![ramp, steps, strokes, reversals, slow, fast, dwell]
+pub fn experiments(
+    evidence: &Evidence,
+    plant: &PlantParameters,
+    limits: &OperatingLimits,
+) -> Vec<Experiment> {
+    let reach = Reach::new(evidence, plant, limits);
+    let [ramp, steps, dwell] = reach.at_a_fixed_surface();
+    let [strokes, reversals] = reach.without_a_workpiece();
+    let mut all = vec![ramp, steps, strokes, reversals];
+    if reach.travel > LEAST_TRAVEL {
+        all.extend(reach.on_a_moved_surface());
+    }
+    all.push(dwell);
+    all
 }
 
 impl Reach {

@@ -309,6 +309,7 @@ pub(in super::super) fn investigate(
     let mut known: Option<Explanations> = None;
     let (stop, found) = loop {
         let mut case = growth.case()?;
+        case.name.clone_from(&case_name);
         if let Some(known) = &known
             && known.outdated(&case.provenance()?).is_none()
         {

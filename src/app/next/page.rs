@@ -152,7 +152,7 @@ fn asked(proposal: &Proposal) -> Vec<Panel<'static>> {
             Role::Command,
             Stroke::Plain,
         );
-        panel("asked for", label.to_owned(), vec![own])
+        panel(format!("{name}, commanded"), label.to_owned(), vec![own])
     };
     let programme = &proposal.chosen.programme;
     let bar = inputs.set_pressure.iter().map(|p| p * 1e-5).collect();
@@ -172,9 +172,9 @@ fn asked(proposal: &Proposal) -> Vec<Panel<'static>> {
     all
 }
 
-fn panel(title: &str, label: String, series: Vec<Series<'static>>) -> Panel<'static> {
+fn panel(title: String, label: String, series: Vec<Series<'static>>) -> Panel<'static> {
     Panel {
-        title: title.to_owned(),
+        title,
         vertical_label: label,
         horizontal: Horizontal::Time,
         series,
@@ -200,7 +200,7 @@ fn panels(proposal: &Proposal) -> Vec<Panel<'static>> {
             series(&own.name, values, role)
         });
         all.push(panel(
-            "predicted",
+            format!("{}, predicted", CHANNEL_WORDS[channel]),
             format!("{} [{unit}]", CHANNEL_WORDS[channel]),
             own.collect(),
         ));
@@ -217,8 +217,11 @@ fn panels(proposal: &Proposal) -> Vec<Panel<'static>> {
             .collect();
         if !others.is_empty() {
             all.push(panel(
-                "less the likeliest",
-                format!("{} [noise]", CHANNEL_WORDS[channel]),
+                format!(
+                    "{}, difference from the likeliest explanation's",
+                    CHANNEL_WORDS[channel]
+                ),
+                "difference [σ of the noise]".to_owned(),
                 others,
             ));
         }

@@ -6,7 +6,7 @@ use crate::diagnosis::recordings::evidence::{Evidence, by_channel};
 use crate::diagnosis::recordings::input::DiagnosisInput;
 use crate::diagnosis::recordings::input::prepare;
 use crate::diagnosis::recordings::recorded::Recorded;
-use crate::plant::{PlantInputs, PlantParameters, registry, simulate};
+use crate::plant::{OperatingLimits, PlantInputs, PlantParameters, registry, simulate};
 
 const NOISE: [f64; 4] = [400.0, 2e-5, 0.8, 0.15];
 const STEP: f64 = 0.004;
@@ -95,6 +95,7 @@ fn case_of(
         shown: Vec::new(),
         tried: None,
         data_faults: Vec::new(),
+        limits: OperatingLimits::default(),
         kept: Vec::new(),
     }
 }

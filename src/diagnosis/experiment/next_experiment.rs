@@ -10,7 +10,7 @@
 use super::{Experiment, experiments};
 use crate::diagnosis::fit::Fit;
 use crate::diagnosis::recordings::evidence::Evidence;
-use crate::plant::{PlantInputs, PlantParameters, simulate};
+use crate::plant::{OperatingLimits, PlantInputs, PlantParameters, simulate};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -30,13 +30,25 @@ pub struct Separation {
     pub duration: f64,
 }
 
-/// The experiments, best first: by D^2 a second.
+/// The experiments that keep what is stated of the rig's limits with either of the two, best first: by D^2 a second.
 #[must_use]
-pub fn separations(evidence: &Evidence, best: &Fit, rival: &Fit) -> Vec<Separation> {
+pub fn separations(
+    evidence: &Evidence,
+    limits: &OperatingLimits,
+    [best, rival]: [&Fit; 2],
+) -> Vec<Separation> {
     let plant = &best.prediction.plant;
-    let all = experiments(evidence, plant);
+    let all = experiments(evidence, plant, limits);
+    let is_allowed = |own: &Experiment| {
+        let plants = [plant, &rival.prediction.plant];
+        let mut truths = plants
+            .map(|plant| simulate(plant, &own.inputs).truth)
+            .into_iter();
+        truths.all(|truth| limits.allow(&own.inputs, &truth))
+    };
     let mut found: Vec<Separation> = all
         .into_par_iter()
+        .filter(is_allowed)
         .map(|experiment| {
             let square = square(evidence, best, &rival.prediction.plant, &experiment.inputs);
             let time = &experiment.inputs.time;
@@ -120,7 +132,9 @@ mod tests {
         let evidence = evidence(1);
         let best = fitted(&evidence, &plant(), &[]);
         let rival = fitted(&evidence, rival, &[]);
-        separations(&evidence, &best, &rival)[0].experiment.name
+        separations(&evidence, &OperatingLimits::default(), [&best, &rival])[0]
+            .experiment
+            .name
     }
 
     #[test]
@@ -149,8 +163,39 @@ mod tests {
         let known = fitted(&evidence, &plant(), &[]);
         let mut open = fitted(&evidence, &plant(), &[free]);
         open.information.fill(0.0);
-        let most = |best: &Fit| separations(&evidence, best, &rival)[0].square;
+        let most = |best: &Fit| {
+            separations(&evidence, &OperatingLimits::default(), [best, &rival])[0].square
+        };
         assert!(most(&known) > 1000.0);
         assert!(most(&open) < 1e-3 * most(&known));
+    }
+
+    /// What the owner of a rig forbids is not advised, whatever it would tell.
+    #[test]
+    fn what_a_rig_may_not_do_is_not_asked_of_it() {
+        let evidence = evidence(1);
+        let best = fitted(&evidence, &plant(), &[]);
+        let mut late = plant();
+        late.device.switching_delay = 0.005;
+        let rival = fitted(&evidence, &late, &[]);
+        let names = |limits: &OperatingLimits| -> Vec<&'static str> {
+            let found = separations(&evidence, limits, [&best, &rival]);
+            found.iter().map(|own| own.experiment.name).collect()
+        };
+        assert_eq!(names(&OperatingLimits::default()).len(), 7);
+        let stays = OperatingLimits {
+            solenoid: Some(false),
+            duration: Some(10.0),
+            ..OperatingLimits::default()
+        };
+        let left = names(&stays);
+        assert_eq!(left.len(), 4, "{left:?}");
+        assert!(!left.contains(&"valve_reversals") && !left.contains(&"dwell"));
+        let gentle = OperatingLimits {
+            force: Some(0.1),
+            without_workpiece: Some(false),
+            ..OperatingLimits::default()
+        };
+        assert!(names(&gentle).is_empty());
     }
 }

@@ -10,7 +10,7 @@ use crate::diagnosis::search::EstablishedEffect;
 use crate::diagnosis::search::kept::KeptExplanation;
 use crate::effects::{Coordinate, Effect};
 use crate::plant::registry::{PRESSURE_DRIFT, START_ERROR};
-use crate::plant::{CHANNELS, Channel, DeviceParts, PlantParameters, Quantity};
+use crate::plant::{CHANNELS, Channel, DeviceParts, OperatingLimits, PlantParameters, Quantity};
 use crate::recording::csv::plausible_range;
 use crate::stats::median;
 
@@ -51,6 +51,8 @@ pub struct DiagnosisInput {
     pub tried: Option<&'static Effect>,
     /// Faults of sensors and clocks that were found, and taken off the recordings.
     pub data_faults: Vec<DataFault>,
+    /// How far an experiment may move the rig, as its file states.
+    pub limits: OperatingLimits,
     /// Explanations that were found in a part of the recordings, to go on from; nothing to begin with nothing.
     pub kept: Vec<KeptExplanation>,
 }
