@@ -185,6 +185,22 @@ fn torques_that_no_experiment_can_keep_are_said() {
     }
 }
 
+/// A cell that has a job states its limits as one that was only recorded does; a run does not look at them.
+#[test]
+fn a_cell_with_a_job_has_limits_too() {
+    let bench = Bench::new("plate_edge_ideal");
+    let scenario = std::fs::read_to_string(bench.path("scenario.toml")).unwrap();
+    let limits = "\n[limits]\njoint_speed_rad_per_s = 0.5\njoint_torque_n_m = [9, 9, 9, 3, 3, 3]\nforce_n = 250.0\n";
+    bench.write("limited.toml", format!("{scenario}{limits}"));
+    let read = load_recorded_cell(&bench.path("limited.toml")).unwrap();
+    assert_eq!(read.limits.joint_motion, [Some(0.5), None]);
+    assert_eq!(read.limits.force, Some(250.0));
+    assert_eq!(read.limits.joint_torque.map(|own| own.len()), Some(6));
+    let file = bench.path("limited.toml").display().to_string();
+    let checked = bench.idc(&["check", &file], &[]);
+    assert_eq!(checked.code, 0, "{}", checked.err);
+}
+
 /// A rig that this test is: it takes what its script is called with, and gives back what the planted cell records. On half of a ride an encoder that is off by so little
 /// is one of the joints beside it too, whose axes are parallel: that is said, and nothing is asked for that would not tell.
 #[test]

@@ -13,6 +13,7 @@ use super::cell::{
     ContactKeys, DriveScenario, LimitOverride, Misplacement, ProcessScenario, ServoScenario,
     SimulationScenario,
 };
+use super::cell_limits::CellLimitsKeys;
 use super::controller::ControllerKeys;
 use super::device::ModelKeys;
 use super::effects::EffectKeys;
@@ -95,6 +96,7 @@ keys! {
         simulation: SimulationScenario = "simulation";
         sensing: SensingKeys = "sensing";
         controller: ControllerKeys = "controller";
+        limits: CellLimitsKeys = "limits";
         /// bounds that the results must keep: [`[expect]`](#expect)
         expect: BTreeMap<String, BoundKeys> = "expect", shown "none";
         /// physics beyond what is nominal: [`[[effect]]`](#effect)

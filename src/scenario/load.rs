@@ -70,6 +70,7 @@ pub(super) fn from_document(
         collision: collision(document, &file.collision, &file.obstacle)?,
         program: program(&section("program"), file.program)?,
         simulation: file.simulation,
+        limits: file.limits.limits(),
         expect: expectations(&section("expect"), &file.expect)?,
         effects: of_whole(document, &file.effect, &nominal)?,
         assumed: assumed::of_cell(document, &tables::<ScenarioFile>()),

@@ -7,6 +7,7 @@ pub mod bench;
 mod bench_file;
 mod cell;
 mod cell_files;
+mod cell_limits;
 mod collision;
 pub mod controller;
 mod device;

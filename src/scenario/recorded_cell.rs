@@ -208,7 +208,7 @@ fn of_scenario(
         observed: Observation::RUN,
         has_job: true,
         sample_rate: sensing.sample_rate,
-        limits: OperatingLimits::default(),
+        limits: scenario.limits,
     })
 }
 

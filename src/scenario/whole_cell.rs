@@ -15,7 +15,7 @@ use super::cell::{
 use super::controller::ControllerScenario;
 use super::program::ProgramScenario;
 use crate::effects::PresentEffect;
-use crate::plant::{Nominal, PlantParameters};
+use crate::plant::{Nominal, OperatingLimits, PlantParameters};
 use crate::sensing::SensingParameters;
 
 /// A whole cell and its job.
@@ -51,6 +51,8 @@ pub struct Scenario {
     pub sensing: SensingParameters,
     /// Controllers of the regulator's pressure.
     pub controller: ControllerScenario,
+    /// How far an experiment may move it.
+    pub limits: OperatingLimits,
     /// Bounds that the results must keep.
     pub expect: Vec<Expectation>,
     /// Effects beyond the nominal cell, of `[[effect]]` or of improved.toml, with all their numbers.
