@@ -6,6 +6,7 @@ use std::time::Duration;
 use glam::DVec3;
 use glamx::DPose3;
 use idc_cell::arm::kinematics::link_poses;
+use idc_cell::diagnosis::answer::Answer;
 use idc_cell::plant::{PlantParameters, simulate};
 use idc_cell::recording::csv::read_cell_csv;
 use idc_cell::replay::LoadedCell;
@@ -199,6 +200,80 @@ fn a_cell_with_a_job_has_limits_too() {
     let file = bench.path("limited.toml").display().to_string();
     let checked = bench.idc(&["check", &file], &[]);
     assert_eq!(checked.code, 0, "{}", checked.err);
+}
+
+/// A later recording of a cell is taken in by a diagnosis of the first, and the same comes of it as from the beginning; the next experiment of that diagnosis knows both.
+#[test]
+fn a_later_recording_of_a_cell_is_taken_in() {
+    let (bench, cell, planted) = begun("");
+    record(&cell, &planted, &PROGRAMS[1], &bench.path("later"));
+    let diagnosed = |out: &str, with: &[&str]| {
+        let words = [
+            "diagnose",
+            "rides",
+            "--scenario",
+            "cell.toml",
+            "--out",
+            out,
+            "--quiet",
+        ];
+        let done = bench.idc(&[&words[..], with].concat(), &[]);
+        assert_eq!(done.code, 0, "{}", done.err);
+        let text = std::fs::read_to_string(bench.path(out).join("diagnosis.json")).unwrap();
+        (done.err, serde_json::from_str::<Answer>(&text).unwrap())
+    };
+    let (_, first) = diagnosed("found", &[]);
+    let with = ["--with-recording", "later/b.csv"];
+    let (said, on) = diagnosed("found", &with);
+    assert!(!said.contains("from the beginning"), "{said}");
+    let (_, anew) = diagnosed("anew", &with);
+    let stated = |answer: &Answer| -> Vec<(String, f64)> {
+        let own = answer.effects.iter();
+        own.map(|own| (own.name.clone(), own.confidence)).collect()
+    };
+    let [first_stated, on_stated, anew_stated] = [&first, &on, &anew].map(stated);
+    // One ride does not show it, two do.
+    assert_eq!(
+        [first_stated.len(), on_stated.len()],
+        [0, 1],
+        "{first_stated:?} {on_stated:?}"
+    );
+    assert_eq!(on_stated.len(), anew_stated.len());
+    for ((name, odds), (other, expected)) in on_stated.iter().zip(&anew_stated) {
+        assert_eq!(name, other);
+        assert!((odds - expected).abs() < 0.02, "{name}: {odds} {expected}");
+    }
+    let text = std::fs::read_to_string(bench.path("found/explanations.json")).unwrap();
+    assert!(text.contains("later/b.csv"), "{text}");
+    let few = [
+        "next",
+        "found",
+        "--out",
+        "next",
+        "--programmes",
+        "2",
+        "--time",
+        "3s",
+        "--quiet",
+    ];
+    let done = bench.idc(&few, &[]);
+    assert_eq!(done.code, 0, "{}", done.err);
+    assert!(!done.err.contains("from the beginning"), "{}", done.err);
+    // A file that is none.
+    let words = [
+        "diagnose",
+        "rides",
+        "--scenario",
+        "cell.toml",
+        "--out",
+        "none",
+        "--with-recording",
+        "nowhere.csv",
+    ];
+    let refused = bench.idc(&words, &[]);
+    assert_eq!(refused.code, 2);
+    assert!(refused.err.contains("nowhere.csv"), "{}", refused.err);
+    assert!(!bench.path("none").exists());
 }
 
 /// A rig that this test is: it takes what its script is called with, and gives back what the planted cell records. On half of a ride an encoder that is off by so little

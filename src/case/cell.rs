@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::arm_prediction::arm_prediction;
 use super::cell_drives::CellDrives;
 use super::error::CaseError;
+use super::explanations::whole;
 use super::recordings::{SAMPLES, is_run};
 use crate::diagnosis::answer::details::PredictionError;
 use crate::diagnosis::experiment::ride::{ArmCommands, ArmReach, Course};
@@ -129,16 +130,25 @@ fn read_one(cell: &LoadedCell, path: &Path) -> Result<CellRecording, CaseError> 
     })
 }
 
-/// The recordings of a folder, and the one in which nothing was measured.
+/// A recording by what a user names: a file, or the folder of a run.
+fn named_by_user(path: &Path) -> (String, PathBuf) {
+    let run = path.join(SAMPLES);
+    let file = if run.is_file() { run } else { path.to_owned() };
+    (whole(path).display().to_string(), file)
+}
+
+/// The recordings of a folder with those beside them, and the one in which nothing was measured.
 fn known_and_unseen(
     cell: &LoadedCell,
     folder: &Path,
+    added: &[PathBuf],
 ) -> Result<(Vec<Named>, Option<Named>), CaseError> {
     let mut known = Vec::new();
     let mut unseen = Vec::new();
-    for path in recordings(folder) {
+    let own = recordings(folder).into_iter();
+    let own = own.map(|path| (name_of(&path), path));
+    for (name, path) in own.chain(added.iter().map(|path| named_by_user(path))) {
         let recording = read_one(cell, &path)?;
-        let name = name_of(&path);
         let is_unseen = recording.readings.is_empty() || name == PREDICT;
         let named = (name, path.display().to_string(), recording);
         if is_unseen {
@@ -161,9 +171,17 @@ fn known_and_unseen(
     Ok((known, unseen.pop()))
 }
 
+fn file_of((name, file, _): &Named) -> (&str, &Path) {
+    (name, Path::new(file))
+}
+
 /// Reads a case.
-pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, CaseError> {
-    let (known, mut unseen) = known_and_unseen(cell, folder)?;
+pub(super) fn read(
+    cell: &LoadedCell,
+    folder: &Path,
+    added: &[PathBuf],
+) -> Result<CellCase, CaseError> {
+    let (known, mut unseen) = known_and_unseen(cell, folder, added)?;
     let scenario = &cell.scenario;
     let axes = all_axes(&known);
     let (noise, bandwidth) = (scenario.joint_noise, scenario.nominal.cell.servo_bandwidth);
@@ -180,13 +198,8 @@ pub(super) fn read(cell: &LoadedCell, folder: &Path) -> Result<CellCase, CaseErr
         (Some(servo), Some(_)) => servo.bandwidth,
         _ => scenario.nominal.cell.servo_bandwidth,
     };
-    let files = |(name, file, _): &Named| (name.clone(), PathBuf::from(file));
-    let files: Vec<(String, PathBuf)> = known.iter().chain(&unseen).map(files).collect();
-    let files: Vec<(&str, &Path)> = (files.iter())
-        .map(|(name, file)| (name.as_str(), file.as_path()))
-        .collect();
-    let (of_known, of_unseen) = files.split_at(known.len());
-    let arm = CellDrives::read(cell, of_known, of_unseen.first().copied())?;
+    let files: Vec<(&str, &Path)> = known.iter().map(file_of).collect();
+    let arm = CellDrives::read(cell, &files, unseen.as_ref().map(file_of))?;
     // An arm file says more of the drives than their dry friction.
     let frictions = match arm {
         Some(_) => Vec::new(),

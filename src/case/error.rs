@@ -53,7 +53,7 @@ pub enum CaseError {
     },
     /// Recordings beside those of a case that takes none.
     #[error(
-        "--with-recording: {folder} is no case of a whole device on a bench; expected one (a rig.toml without `device.parts`): name the recordings of any other in its own file"
+        "--with-recording: {folder} is no case of a whole device on a bench; expected one (a rig.toml without `device.parts`), or a cell (--scenario): name the recordings of any other in its own file"
     )]
     NothingToAddTo {
         /// The case's folder.

@@ -214,15 +214,22 @@ impl Case {
         ))
     }
 
-    /// Reads a folder with recordings of a cell: files, or folders of runs.
+    /// Reads a folder with recordings of a cell, files or folders of runs, with such recordings beside them.
     ///
     /// # Errors
     /// A folder without any, or what is wrong with one.
-    pub fn of_cell(folder: &Path, cell: &LoadedCell) -> Result<Self, CaseError> {
-        let read = Box::new(cell::read(cell, folder)?);
+    pub fn of_cell(
+        folder: &Path,
+        cell: &LoadedCell,
+        recordings: &[PathBuf],
+    ) -> Result<Self, CaseError> {
+        let read = Box::new(cell::read(cell, folder, recordings)?);
         prepare(&read.input)?;
         let cell = Box::new(cell.clone());
-        Ok(Self::new(folder, Kind::Cell { cell, read }))
+        Ok(Self {
+            added: recordings.to_vec(),
+            ..Self::new(folder, Kind::Cell { cell, read })
+        })
     }
 
     /// Puts a law of a user's among what may be missing. However the search ends, the answer says how it fares.

@@ -112,7 +112,7 @@ impl Prepared {
             Subject::Postures(Box::new(PosturesCase::from_folder(folder)?))
         } else {
             let mut case = match cell {
-                Some(cell) => Case::of_cell(folder, cell)?,
+                Some(cell) => Case::of_cell(folder, cell, recordings)?,
                 None => Case::with_recordings(folder, recordings)?,
             };
             if let Some(law) = tried {

@@ -119,7 +119,7 @@ impl Worker {
     ) -> Result<(Diagnosed, Option<String>), AppError> {
         let path = self.folder.join(&asked.path);
         let case = match &self.nominal {
-            NominalModel::Cell(cell) => Case::of_cell(&path, cell)?,
+            NominalModel::Cell(cell) => Case::of_cell(&path, cell, &[])?,
             NominalModel::Rig(rig) if path.is_dir() => Case::of_rig(rig, &path, &asked.files)?,
             NominalModel::Rig(rig) => {
                 let folder = path.parent().unwrap_or(Path::new(""));

@@ -70,7 +70,7 @@ fn case_of(folder: &Path, scenario: Option<&Path>) -> Result<Case, AppError> {
     let known = Explanations::read(&file)?;
     let cell = (scenario.or(known.scenario.as_deref())).map(LoadedCell::load);
     let mut case = match cell.transpose()? {
-        Some(cell) => Case::of_cell(&known.case, &cell)?,
+        Some(cell) => Case::of_cell(&known.case, &cell, &known.recordings)?,
         None => Case::with_recordings(&known.case, &known.recordings)?,
     };
     match known.outdated(&case.provenance()?) {

@@ -193,7 +193,7 @@ pub(super) fn stated_limits(case: &Case) -> Result<OperatingLimits, NextError> {
 /// A case of a bench, or of a cell by its recordings alone.
 pub(super) fn case_in(folder: &Path, cell: Option<&LoadedCell>) -> Result<Case, AppError> {
     Ok(match cell {
-        Some(cell) => Case::of_cell(folder, cell)?,
+        Some(cell) => Case::of_cell(folder, cell, &[])?,
         None => Case::from_folder(folder)?,
     })
 }
