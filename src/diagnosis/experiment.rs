@@ -8,6 +8,7 @@ pub mod next_experiment;
 mod open;
 pub mod programme;
 pub mod ride;
+mod steadiness;
 
 use super::recordings::evidence::Evidence;
 use crate::plant::{InitialState, OperatingLimits, PlantInputs, PlantParameters};

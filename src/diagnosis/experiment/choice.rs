@@ -17,6 +17,7 @@ use super::information::{Expected, Open, Outlook, Sensors, entropy, shares_of};
 use super::limits::{LimitError, Limits};
 use super::programme::Programme;
 use super::ride::ArmReach;
+use super::steadiness::STEADY;
 use crate::diagnosis::fit::covariance::inverse;
 use crate::plant::{PlantInputs, PlantParameters, simulate};
 
@@ -100,7 +101,7 @@ impl Extremes {
 /// Chooses an experiment; `observer` is given programmes looked at and in all.
 ///
 /// # Errors
-/// None that keeps the force on the part and the stroke.
+/// None that keeps the force on the part and the stroke, or whose motion can be predicted.
 pub fn choose(
     open: &[Open],
     sensors: &Sensors,
@@ -154,6 +155,7 @@ pub fn choose(
     let least = choice.least;
     match choice.kept.into_iter().next() {
         Some(best) => Ok(best),
+        None if least.force.is_infinite() => Err(LimitError::Unpredictable),
         None if least.stroke > limits.stroke => Err(LimitError::Stroke {
             most: limits.stroke,
             least: least.stroke,
@@ -195,6 +197,10 @@ impl Choice<'_> {
         // Derivatives are most of the work: of what could not be among the best they are not asked for.
         let most = outlook.most_on_which() + self.weight * self.most_on_numbers;
         if full && self.is_open && most / time <= self.kept[KEPT - 1].value {
+            return None;
+        }
+        // What cannot be predicted tells nothing, and no fit gets over it.
+        if outlook.sensitivity() > STEADY {
             return None;
         }
         let expected = outlook.expected();

@@ -15,6 +15,7 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+use super::steadiness::sensitivity;
 use crate::diagnosis::fit::free::Free;
 use crate::diagnosis::recordings::evidence::Evidence;
 use crate::diagnosis::search::scale::IMMATERIAL;
@@ -316,6 +317,15 @@ impl<'a> Outlook<'a> {
             inputs,
             trajectories,
         }
+    }
+
+    /// How far what is read depends on the least that is done otherwise, by the explanation of which it does most [1].
+    #[must_use]
+    pub fn sensitivity(&self) -> f64 {
+        let own = self.open.par_iter().zip(&self.trajectories);
+        let of =
+            own.map(|(open, own)| sensitivity(&open.plant, self.inputs, own, self.sensors.noise));
+        of.reduce(|| 0.0, f64::max)
     }
 
     /// Information on which explanation is right if none could be fitted anew [nat]: no less than there is.

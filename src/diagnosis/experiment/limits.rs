@@ -111,6 +111,11 @@ pub enum LimitError {
         /// The least of the largest strokes [m].
         least: f64,
     },
+    /// Whatever is done, the tool bounces.
+    #[error(
+        "under every programme that was tried the tool bounces so that nothing can be predicted; expected a slower surface, or a larger set pressure, in [limits]"
+    )]
+    Unpredictable,
     /// A drive would have to give more than it may.
     #[error(
         "every programme that was tried asks a drive of the arm for more than `joint_torque_n_m`, at least for {percent:.0} % of it; expected larger torques, or a smaller force, joint speed or acceleration, in [limits]"
