@@ -8,7 +8,6 @@ pub mod next_experiment;
 mod open;
 pub mod programme;
 pub mod ride;
-mod steadiness;
 
 use super::recordings::evidence::Evidence;
 use crate::plant::{InitialState, OperatingLimits, PlantInputs, PlantParameters};

@@ -5,4 +5,5 @@ pub mod device;
 pub mod evidence;
 pub mod input;
 pub mod recorded;
+pub mod steadiness;
 pub mod subject;

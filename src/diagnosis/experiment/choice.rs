@@ -17,8 +17,8 @@ use super::information::{Expected, Open, Outlook, Sensors, entropy, shares_of};
 use super::limits::{LimitError, Limits};
 use super::programme::Programme;
 use super::ride::ArmReach;
-use super::steadiness::STEADY;
 use crate::diagnosis::fit::covariance::inverse;
+use crate::diagnosis::recordings::steadiness::STEADY;
 use crate::plant::{PlantInputs, PlantParameters, simulate};
 
 /// Weight of a number's information while it is open which explanation is right [1].

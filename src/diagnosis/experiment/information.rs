@@ -15,9 +15,9 @@
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-use super::steadiness::sensitivity;
 use crate::diagnosis::fit::free::Free;
 use crate::diagnosis::recordings::evidence::Evidence;
+use crate::diagnosis::recordings::steadiness::sensitivity;
 use crate::diagnosis::search::scale::IMMATERIAL;
 use crate::plant::{CHANNELS, PlantInputs, PlantParameters, PlantTrajectory, simulate};
 

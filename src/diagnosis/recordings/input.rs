@@ -4,13 +4,16 @@ use super::clean::{Cleaning, clean};
 use super::device::Device;
 use super::evidence::{Evidence, Measured};
 use super::recorded::{COLUMNS, QUANTITIES, Recorded, RecordedError};
+use super::steadiness::unpredictable;
 use crate::diagnosis::data_fault::fault::DataFault;
 use crate::diagnosis::fit::free::{Free, Prior};
 use crate::diagnosis::search::EstablishedEffect;
 use crate::diagnosis::search::kept::KeptExplanation;
 use crate::effects::{Coordinate, Effect};
 use crate::plant::registry::{PRESSURE_DRIFT, START_ERROR};
-use crate::plant::{CHANNELS, Channel, DeviceParts, OperatingLimits, PlantParameters, Quantity};
+use crate::plant::{
+    CHANNELS, Channel, DeviceParts, OperatingLimits, PlantInputs, PlantParameters, Quantity,
+};
 use crate::recording::csv::plausible_range;
 use crate::stats::median;
 
@@ -182,6 +185,12 @@ pub fn prepare(case: &DiagnosisInput) -> Result<Prepared, RecordedError> {
                 .map(|sentence| format!("{name}: {sentence}")),
         );
         cleanings.push(cleaning);
+        if case.nominal.parts == DeviceParts::Whole {
+            notes.extend(
+                (set_bouncing_aside(case, &inputs, &mut readings).iter())
+                    .map(|sentence| format!("{name}: {sentence}")),
+            );
+        }
         measured.push(Measured {
             name: name.clone(),
             free: inputs.surface.iter().all(|surface| surface.is_nan()),
@@ -195,6 +204,68 @@ pub fn prepare(case: &DiagnosisInput) -> Result<Prepared, RecordedError> {
         cleanings,
         notes,
     })
+}
+
+/// Sets aside what was read while a tool bounced on its own way, but for the regulator's pressure; a sentence on each stretch.
+fn set_bouncing_aside(
+    case: &DiagnosisInput,
+    inputs: &PlantInputs,
+    readings: &mut [Vec<f64>; CHANNELS.len()],
+) -> Vec<String> {
+    let of = |plant: &PlantParameters| unpredictable(plant, inputs, readings, case.noise);
+    let mut stretches = of(&case.nominal);
+    // A device within its tolerances does so at other times.
+    if !stretches.is_empty() {
+        let others = at_the_ends_of_tolerances(case);
+        stretches.extend(others.iter().flat_map(of));
+    }
+    let stretches = joined(stretches);
+    for [start, end] in &stretches {
+        let moved = CHANNELS.into_iter().zip(readings.iter_mut());
+        for (_, values) in moved.filter(|(channel, _)| *channel != Channel::RegulatorPressure) {
+            for (time, value) in inputs.time.iter().zip(values) {
+                if (start..=end).contains(&time) {
+                    *value = f64::NAN;
+                }
+            }
+        }
+    }
+    let words = |[start, end]: &[f64; 2]| {
+        format!(
+            "from {start:.2} to {end:.2} s the tool bounces so that no model can predict where it is (a hundred-thousandth of the set pressure moves it); what was read there, but for the regulator's pressure, is compared with nothing"
+        )
+    };
+    stretches.iter().map(words).collect()
+}
+
+/// The nominal model with each of its tolerated numbers as far off as is usual, one at a time.
+fn at_the_ends_of_tolerances(case: &DiagnosisInput) -> Vec<PlantParameters> {
+    let plant = |free: &Free, side: f64| {
+        let deviation = free.departure_slope(free.start).abs().recip();
+        deviation.is_finite().then(|| {
+            let at = free.coordinate.of(free.start) + side * deviation;
+            let mut plant = case.nominal.clone();
+            (free.quantity).set(&mut plant, free.clamp(free.coordinate.value(at)));
+            plant
+        })
+    };
+    let ends = case.tolerated.iter();
+    ends.flat_map(|free| [-1.0, 1.0].map(|side| plant(free, side)))
+        .flatten()
+        .collect()
+}
+
+/// Stretches, those that overlap as one, in their order.
+fn joined(mut stretches: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    stretches.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut all: Vec<[f64; 2]> = Vec::new();
+    for [start, end] in stretches {
+        match all.last_mut() {
+            Some(last) if start <= last[1] => last[1] = last[1].max(end),
+            _ => all.push([start, end]),
+        }
+    }
+    all
 }
 
 /// Channels that a recording lacks, of those that the rig has sensors of.
@@ -228,6 +299,12 @@ fn nominal_noise(cleanings: &[Cleaning], sheet: &[f64; CHANNELS.len()]) -> [f64;
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn stretches_that_overlap_are_one() {
+        let all = vec![[3.0, 4.0], [0.5, 1.0], [0.8, 2.0], [2.0, 2.5], [0.6, 0.7]];
+        assert_eq!(joined(all), [[0.5, 2.5], [3.0, 4.0]]);
+    }
 
     #[test]
     fn the_data_sheet_holds_unless_the_recordings_clearly_differ() {
