@@ -199,7 +199,7 @@ impl Choice<'_> {
         if full && self.is_open && most / time <= self.kept[KEPT - 1].value {
             return None;
         }
-        // What cannot be predicted tells nothing, and no fit gets over it.
+        // What cannot be predicted carries no information, and no fit accounts for it.
         if outlook.sensitivity() > STEADY {
             return None;
         }
