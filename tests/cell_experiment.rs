@@ -27,6 +27,11 @@ fn begun(limits: &str) -> (Bench, LoadedCell, PlantParameters) {
     (bench, cell, planted)
 }
 
+/// Arguments of a command line.
+fn words_of(line: &str) -> Vec<&str> {
+    line.split(' ').collect()
+}
+
 /// Commands as a file has them.
 fn commands(file: &Path, cell: &LoadedCell) -> Commands {
     let read = read_cell_csv(file, cell.joints.len()).unwrap();
@@ -62,17 +67,7 @@ fn an_experiment_of_a_cell_stays_on_the_path_of_its_recordings() {
     );
     let limits = limits.as_str();
     let (bench, cell, planted) = begun(limits);
-    let words = [
-        "next",
-        "rides",
-        "--scenario",
-        "cell.toml",
-        "--out",
-        "next",
-        "--programmes",
-        "16",
-        "--quiet",
-    ];
+    let words = words_of("next rides --scenario cell.toml --out next --programmes 16 --quiet");
     let done = bench.idc(&words, &[]);
     assert_eq!((done.code, done.out.as_str()), (0, ""), "{}", done.err);
     assert_eq!(
@@ -130,17 +125,7 @@ fn an_experiment_of_a_cell_stays_on_the_path_of_its_recordings() {
     assert!(instructions.contains("along the edge"), "{instructions}");
     assert!(!instructions.contains("valve"), "{instructions}");
     // Nothing that a cell has may be moved.
-    let words = [
-        "next",
-        "rides",
-        "--scenario",
-        "cell.toml",
-        "--out",
-        "none",
-        "--may",
-        "solenoid",
-        "--quiet",
-    ];
+    let words = words_of("next rides --scenario cell.toml --out none --may solenoid --quiet");
     let refused = bench.idc(&words, &[]);
     assert_eq!(refused.code, 2);
     assert!(
@@ -168,17 +153,7 @@ fn torques_that_no_experiment_can_keep_are_said() {
             "weak.toml",
             format!("{CELL}\n[limits]\njoint_torque_n_m = {torques}\n"),
         );
-        let words = [
-            "next",
-            "rides",
-            "--scenario",
-            "weak.toml",
-            "--out",
-            "weak",
-            "--programmes",
-            "4",
-            "--quiet",
-        ];
+        let words = words_of("next rides --scenario weak.toml --out weak --programmes 4 --quiet");
         let refused = bench.idc(&words, &[]);
         assert_eq!(refused.code, 2);
         assert!(refused.err.contains(said), "{}", refused.err);
@@ -245,31 +220,13 @@ fn a_later_recording_of_a_cell_is_taken_in() {
     }
     let text = std::fs::read_to_string(bench.path("found/explanations.json")).unwrap();
     assert!(text.contains("later/b.csv"), "{text}");
-    let few = [
-        "next",
-        "found",
-        "--out",
-        "next",
-        "--programmes",
-        "2",
-        "--time",
-        "3s",
-        "--quiet",
-    ];
+    let few = words_of("next found --out next --programmes 2 --time 3s --quiet");
     let done = bench.idc(&few, &[]);
     assert_eq!(done.code, 0, "{}", done.err);
     assert!(!done.err.contains("from the beginning"), "{}", done.err);
     // A file that is none.
-    let words = [
-        "diagnose",
-        "rides",
-        "--scenario",
-        "cell.toml",
-        "--out",
-        "none",
-        "--with-recording",
-        "nowhere.csv",
-    ];
+    let words =
+        words_of("diagnose rides --scenario cell.toml --out none --with-recording nowhere.csv");
     let refused = bench.idc(&words, &[]);
     assert_eq!(refused.code, 2);
     assert!(refused.err.contains("nowhere.csv"), "{}", refused.err);
@@ -292,23 +249,9 @@ fn a_cell_is_asked_until_nothing_would_tell_more() {
         &bench,
         "cp \"$1\" asked.part && mv asked.part asked.csv\nwhile [ ! -f answer.csv ]; do sleep 0.02; done\nmv answer.csv \"$2\"",
     );
-    let words = [
-        "investigate",
-        "rides",
-        "--scenario",
-        "cell.toml",
-        "--rig",
-        "./rig.sh",
-        "--programmes",
-        "24",
-        "--time",
-        "6s",
-        "--until",
-        "0.98",
-        "--out",
-        "out",
-        "--quiet",
-    ];
+    let words = words_of(
+        "investigate rides --scenario cell.toml --rig ./rig.sh --programmes 24 --time 6s --until 0.98 --out out --quiet",
+    );
     let (asked, answer) = (bench.path("asked.csv"), bench.path("answer.csv"));
     let done = std::thread::scope(|scope| {
         let program = scope.spawn(|| bench.idc(&words, &[]));

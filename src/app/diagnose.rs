@@ -47,8 +47,8 @@ pub(super) struct DiagnoseArguments {
     /// Scenario file of a recorded cell (kind = "recorded_cell"): cases then hold recordings alone, and one without measured columns is to be predicted.
     #[arg(long)]
     scenario: Option<PathBuf>,
-    /// A recording beside those that rig.toml names or, of a cell, that are in the folder, as often as needed. Where --out holds a diagnosis of the others, it is gone on from and takes the
-    /// recording in: what is settled stays, and odds are those of all recordings.
+    /// A recording beside those that rig.toml names or, of a cell, that are in the folder, as often as needed. Where --out holds a diagnosis of the
+    /// others, it is gone on from and takes the recording in: what is settled stays, and odds are those of all recordings.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["all", "resume"])]
     with_recording: Vec<PathBuf>,
     /// Diagnose every folder in it that holds a rig.toml, an arm.toml or a postures.toml, each into a folder of its name, and state what they show together of parts that they share.

@@ -4,6 +4,6 @@ pub mod clean;
 pub mod device;
 pub mod evidence;
 pub mod input;
+pub mod predictability;
 pub mod recorded;
-pub mod steadiness;
 pub mod subject;

@@ -29,6 +29,9 @@ pub struct Drive {
     pub contact: Vec<[f64; 3]>,
 }
 
+/// A drive that may give less than this may give nothing [N m].
+const LEAST_TORQUE: f64 = 1e-3;
+
 /// What the drives have to give at a sample.
 struct Load {
     /// Speeds of the motors [rad/s].
@@ -102,7 +105,9 @@ impl LoadedCell {
             let touching = touching_at(trajectory, i, stroke[i]);
             let load = self.torques_at(trajectory, i, stroke[i], (&touching, force[i]));
             let drives = load.torques.into_iter().zip(friction).zip(limits);
-            drives.map(|((torque, friction), most)| (torque.abs() + friction) / most)
+            drives.map(|((torque, friction), most)| {
+                (torque.abs() + friction) / most.max(LEAST_TORQUE)
+            })
         });
         shares.fold(0.0, f64::max)
     }

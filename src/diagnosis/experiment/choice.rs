@@ -18,7 +18,7 @@ use super::limits::{LimitError, Limits};
 use super::programme::Programme;
 use super::ride::ArmReach;
 use crate::diagnosis::fit::covariance::inverse;
-use crate::diagnosis::recordings::steadiness::STEADY;
+use crate::diagnosis::recordings::predictability::PREDICTABLE;
 use crate::plant::{PlantInputs, PlantParameters, simulate};
 
 /// Weight of a number's information while it is open which explanation is right [1].
@@ -110,23 +110,7 @@ pub fn choose(
     observer: &mut dyn FnMut(usize, usize),
 ) -> Result<Chosen, LimitError> {
     let mut random = ChaCha8Rng::seed_from_u64(settings.seed);
-    let plants: Vec<Vec<PlantParameters>> =
-        open.iter().map(|own| draws(own, &mut random)).collect();
-    let is_open = entropy(&shares_of(open)) > OPEN;
-    let mut choice = Choice {
-        of: (open, sensors, limits),
-        plants,
-        is_open,
-        weight: if is_open { BESIDE } else { 1.0 },
-        preparation: settings.preparation,
-        kept: Vec::new(),
-        least: Extremes {
-            force: f64::INFINITY,
-            stroke: f64::INFINITY,
-            torque_share: f64::INFINITY,
-        },
-        most_on_numbers: 0.0,
-    };
+    let mut choice = Choice::new((open, sensors, limits), settings.preparation, &mut random);
     let more = (OF / open.len() as f64).max(1.0);
     let programmes = (more * settings.programmes as f64).round() as usize;
     let drawn = (DRAWN * programmes as f64).ceil() as usize;
@@ -186,7 +170,31 @@ struct Choice<'a> {
     most_on_numbers: f64,
 }
 
-impl Choice<'_> {
+impl<'a> Choice<'a> {
+    /// One of which nothing has been looked at; `preparation` is the cost of preparing a recording [s].
+    fn new(
+        of: (&'a [Open], &'a Sensors, &'a Limits),
+        preparation: f64,
+        random: &mut ChaCha8Rng,
+    ) -> Self {
+        let (open, ..) = of;
+        let is_open = entropy(&shares_of(open)) > OPEN;
+        Self {
+            of,
+            plants: open.iter().map(|own| draws(own, random)).collect(),
+            is_open,
+            weight: if is_open { BESIDE } else { 1.0 },
+            preparation,
+            kept: Vec::new(),
+            least: Extremes {
+                force: f64::INFINITY,
+                stroke: f64::INFINITY,
+                torque_share: f64::INFINITY,
+            },
+            most_on_numbers: 0.0,
+        }
+    }
+
     /// Keeps a programme whose information is at least so much [nat], and more than that of others; gives the force on the part where only that forbids it [N].
     fn look(&mut self, programme: &Programme, least: f64) -> Option<f64> {
         let (open, sensors, limits) = self.of;
@@ -200,7 +208,7 @@ impl Choice<'_> {
             return None;
         }
         // What cannot be predicted carries no information, and no fit accounts for it.
-        if outlook.sensitivity() > STEADY {
+        if outlook.sensitivity() > PREDICTABLE {
             return None;
         }
         let expected = outlook.expected();
@@ -305,6 +313,7 @@ fn draws(open: &Open, random: &mut ChaCha8Rng) -> Vec<PlantParameters> {
 #[cfg(test)]
 mod tests {
     use super::super::information::tests::sensors;
+    use super::super::programme::{Part, Segment, Surface};
     use super::*;
     use crate::diagnosis::fit::free::free_of;
     use crate::diagnosis::recordings::evidence::Evidence;
@@ -332,6 +341,10 @@ mod tests {
             information: DMatrix::zeros(0, 0),
             of_effects: Vec::new(),
         })
+    }
+
+    fn seeded() -> ChaCha8Rng {
+        ChaCha8Rng::seed_from_u64(1)
     }
 
     fn settings(programmes: usize) -> ChoiceSettings {
@@ -405,6 +418,34 @@ mod tests {
             error.contains("force_n") && error.contains("[limits]"),
             "{error}"
         );
+    }
+
+    /// A programme in which the tool bounces unpredictably is left out, whatever its readings would distinguish; one in which it follows the surface is kept.
+    #[test]
+    fn what_cannot_be_predicted_is_left_out() {
+        let gained = pair(|plant| plant.sensors.force_gain = 1.05);
+        let (sensors, limits) = (sensors(), limits());
+        let kept = |set_pressure: f64, peak_to_peak: f64, frequency: f64| {
+            let programme = Programme {
+                segments: vec![Segment {
+                    duration: 4.0,
+                    set_pressure: [set_pressure; 2],
+                    extends: true,
+                }],
+                part: Part::Surface(Surface {
+                    position: 0.03,
+                    peak_to_peak,
+                    frequency,
+                    start: 0.0,
+                }),
+            };
+            let mut choice = Choice::new((&gained, &sensors, &limits), 15.0, &mut seeded());
+            choice.look(&programme, 0.0);
+            (choice.kept.len(), choice.least.force)
+        };
+        let (count, force) = kept(2e5, 0.005, 0.5);
+        assert_eq!(count, 1, "{force}");
+        assert_eq!(kept(4e4, 0.008, 15.0), (0, f64::INFINITY));
     }
 
     /// The stroke is kept where a surface can stop the tool before it, and where nothing can, that is said.

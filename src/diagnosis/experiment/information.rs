@@ -17,7 +17,7 @@ use rayon::prelude::*;
 
 use crate::diagnosis::fit::free::Free;
 use crate::diagnosis::recordings::evidence::Evidence;
-use crate::diagnosis::recordings::steadiness::sensitivity;
+use crate::diagnosis::recordings::predictability::sensitivity;
 use crate::diagnosis::search::scale::IMMATERIAL;
 use crate::plant::{CHANNELS, PlantInputs, PlantParameters, PlantTrajectory, simulate};
 
@@ -319,12 +319,11 @@ impl<'a> Outlook<'a> {
         }
     }
 
-    /// How far what is read depends on the least that is done otherwise, by the explanation of which it does most [1].
+    /// Largest sensitivity of the motion over the explanations, as [`sensitivity`] has it [1].
     #[must_use]
     pub fn sensitivity(&self) -> f64 {
         let own = self.open.par_iter().zip(&self.trajectories);
-        let of =
-            own.map(|(open, own)| sensitivity(&open.plant, self.inputs, own, self.sensors.noise));
+        let of = own.map(|(open, own)| sensitivity(&open.plant, self.inputs, &own.truth.stroke));
         of.reduce(|| 0.0, f64::max)
     }
 

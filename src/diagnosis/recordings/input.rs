@@ -3,8 +3,8 @@
 use super::clean::{Cleaning, clean};
 use super::device::Device;
 use super::evidence::{Evidence, Measured};
+use super::predictability::unpredictable;
 use super::recorded::{COLUMNS, QUANTITIES, Recorded, RecordedError};
-use super::steadiness::unpredictable;
 use crate::diagnosis::data_fault::fault::DataFault;
 use crate::diagnosis::fit::free::{Free, Prior};
 use crate::diagnosis::search::EstablishedEffect;
@@ -187,7 +187,7 @@ pub fn prepare(case: &DiagnosisInput) -> Result<Prepared, RecordedError> {
         cleanings.push(cleaning);
         if case.nominal.parts == DeviceParts::Whole {
             notes.extend(
-                (set_bouncing_aside(case, &inputs, &mut readings).iter())
+                (leave_out_bouncing(case, &inputs, &mut readings).iter())
                     .map(|sentence| format!("{name}: {sentence}")),
             );
         }
@@ -206,15 +206,17 @@ pub fn prepare(case: &DiagnosisInput) -> Result<Prepared, RecordedError> {
     })
 }
 
-/// Sets aside what was read while a tool bounced on its own way, but for the regulator's pressure; a sentence on each stretch.
-fn set_bouncing_aside(
+/// Leaves out what was read while the tool bounced unpredictably, but for the regulator's pressure; a sentence on each stretch.
+fn leave_out_bouncing(
     case: &DiagnosisInput,
     inputs: &PlantInputs,
     readings: &mut [Vec<f64>; CHANNELS.len()],
 ) -> Vec<String> {
-    let of = |plant: &PlantParameters| unpredictable(plant, inputs, readings, case.noise);
+    let noise = case.noise[Channel::Force as usize];
+    let force = readings[Channel::Force as usize].clone();
+    let of = |plant: &PlantParameters| unpredictable(plant, inputs, (&force, noise));
     let mut stretches = of(&case.nominal);
-    // A device within its tolerances does so at other times.
+    // A device within its tolerances diverges at other times.
     if !stretches.is_empty() {
         let others = at_the_ends_of_tolerances(case);
         stretches.extend(others.iter().flat_map(of));
@@ -232,13 +234,13 @@ fn set_bouncing_aside(
     }
     let words = |[start, end]: &[f64; 2]| {
         format!(
-            "from {start:.2} to {end:.2} s the tool bounces so that no model can predict where it is (a hundred-thousandth of the set pressure moves it); what was read there, but for the regulator's pressure, is compared with nothing"
+            "from {start:.2} to {end:.2} s the tool bounces unpredictably (a change of the set pressure by 0.001 % would change its motion visibly): this part is left out of the comparison, but for the regulator's pressure"
         )
     };
     stretches.iter().map(words).collect()
 }
 
-/// The nominal model with each of its tolerated numbers as far off as is usual, one at a time.
+/// The nominal model with one of its tolerated numbers off by its tolerance: each of them, either way.
 fn at_the_ends_of_tolerances(case: &DiagnosisInput) -> Vec<PlantParameters> {
     let plant = |free: &Free, side: f64| {
         let deviation = free.departure_slope(free.start).abs().recip();
