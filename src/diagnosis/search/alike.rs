@@ -8,9 +8,10 @@ use super::ruled_out::exchanges;
 use super::scale::Scale;
 use super::{Search, same};
 use crate::diagnosis::fit::free::{Free, free_of};
-use crate::diagnosis::fit::hypothesis::Hypothesis;
+use crate::diagnosis::fit::hypothesis::{Hypothesis, is_equivalent};
 use crate::diagnosis::fit::{FULL, Limit};
 use crate::effects::Effect;
+use crate::plant::DeviceParts;
 
 impl Search<'_> {
     /// Adds what has another law of its kind in the place of one of the best explanation's, fitted in full from where that law may start, or puts it in the place of a
@@ -49,6 +50,51 @@ impl Search<'_> {
         if full[0].names() != best.names() {
             self.eliminate(full, observer);
         }
+    }
+
+    /// Adds what has another law of its kind in the place of one of the best explanation's, where that was not fitted: where tolerances explain as much as the law
+    /// gains, a rough look promises its like nothing, and the law would be stated for certain beside nothing.
+    pub(super) fn add_unfitted_alike(
+        &self,
+        found: &mut Vec<Hypothesis>,
+        observer: &mut Observer<'_>,
+    ) {
+        let whole = self.nominal.parts == DeviceParts::Whole;
+        let Some(best) = found.first().filter(|h| whole && h.unlisted().is_none()) else {
+            return;
+        };
+        let is_fitted = |effects: &[&'static Effect]| {
+            let mut names: Vec<&str> = effects.iter().map(|effect| effect.name).collect();
+            names.sort_unstable();
+            let mut fitted = found.iter();
+            fitted.any(|h| h.unlisted().is_none() && h.names() == names)
+        };
+        let all = exchanges(self, best);
+        let more: Vec<Hypothesis> = (all.iter().filter(|effects| !is_fitted(effects)))
+            .take_while(|_| !self.is_spent())
+            .filter_map(|effects| self.at_each_start(effects, best))
+            .collect();
+        for h in &more {
+            observer(&Step::Variation.of(h, format!("alike {:.1}", self.score(h))));
+        }
+        self.beside_best(found, more);
+    }
+
+    /// Puts explanations beside the best one, or before it what scores better and says something else: the search has weighed the best one with more than its score.
+    pub(super) fn beside_best(&self, found: &mut Vec<Hypothesis>, more: Vec<Hypothesis>) {
+        let Some(best) = found.first() else { return };
+        let score = self.score(best);
+        let better = (more.iter())
+            .filter(|h| self.score(h) < score && !is_equivalent(h, best))
+            .min_by(|a, b| self.score(a).total_cmp(&self.score(b)))
+            .map(Hypothesis::names);
+        found.extend(more);
+        let place = better.and_then(|names| found.iter().position(|h| h.names() == names));
+        if let Some(place) = place {
+            let better = found.remove(place);
+            found.insert(0, better);
+        }
+        found[1..].sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
     }
 
     /// The best of the fits from each start of the law that is not the other's; none of one that has no start.
@@ -93,5 +139,34 @@ impl Search<'_> {
         }
         let from = (&self.nominal, None);
         self.fitted(effects.to_vec(), from, &free, FULL, Limit::FULL)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::diagnosis::fit::hypothesis::Hypothesis;
+    use crate::diagnosis::test_evidence::{evidence_of, orifices_within_tolerances, plant, search};
+    use crate::effects::{CATALOGUE, NUMBERS_OFF};
+
+    /// A restriction was stated at 99.7 % where the sheet's temperature was off: the discharge coefficient, of one number too, had not been fitted, for what one orifice's
+    /// tolerance takes up a look cannot promise.
+    #[test]
+    fn of_laws_of_one_kind_none_is_stated_before_the_others_are_fitted() {
+        let mut truth = plant();
+        truth.device.supply_orifice *= 0.85;
+        truth.device.exhaust_orifice *= 0.95;
+        let evidence = evidence_of(&truth, vec![vec![1.5e5; 126], vec![2.5e5; 126]]);
+        let mut search = search(&evidence);
+        search.tolerated = orifices_within_tolerances();
+        search.candidates = CATALOGUE.iter().chain(&NUMBERS_OFF).collect();
+        let found = search.run(&mut |_| ());
+        let names: Vec<Vec<&str>> = found.iter().map(Hypothesis::names).collect();
+        for own in [
+            "supply_restriction",
+            "exhaust_restriction",
+            "number_off (valve.discharge_coefficient)",
+        ] {
+            assert!(names.contains(&vec![own]), "{own}: {names:?}");
+        }
     }
 }

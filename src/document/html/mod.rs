@@ -9,6 +9,7 @@ mod policy;
 
 use super::{Block, Cell, Document, Panel, Section, Strip, Table, Tone};
 use super::{address, first_sentence, packed};
+use crate::quantity::capital;
 
 const STYLE: &str = include_str!("../../../assets/page/page.css");
 const CHART_STYLE: &str = include_str!("../../../assets/page/uplot/uPlot.min.css");
@@ -138,7 +139,7 @@ fn block(block_of: &Block<'_>, budget: &Budget) -> Markup {
             Block::Hint(text) => p.hint { (bound(text)) },
             Block::Table(of) if of.rows.is_empty() => p.hint { (of.caption) " None." },
             Block::Table(of) => (table(of)),
-            Block::Panel(of) if nothing_happened(of) => p { b { (of.title) } ": 0 throughout." },
+            Block::Panel(of) if nothing_happened(of) => p { b { (capital(&of.title)) } ": 0 throughout." },
             Block::Panel(of) => (chart(of, budget)),
             Block::Strip(of) if of.rows.iter().all(|(_, spans)| spans.is_empty()) => p.hint { "At no time." },
             Block::Strip(of) => (strip(of)),
@@ -198,7 +199,7 @@ fn chart(panel: &Panel<'_>, budget: &Budget) -> Markup {
     markup! {
         figure.chart aria-label={ (panel.title) ": " (panel.vertical_label) } {
             figcaption {
-                span { (panel.title) @if kept < of { small { " (" (kept) " of " (of) " samples: " (picked) ")" } } }
+                span { (capital(&panel.title)) @if kept < of { small { " (" (kept) " of " (of) " samples: " (picked) ")" } } }
                 button.reset type="button" { "Show all" }
             }
             div.plot {}
