@@ -21,6 +21,7 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use idc_cell::diagnosis::experiment::choice::{ChoiceSettings, choose};
+use idc_cell::diagnosis::experiment::coverage::Coverage;
 use idc_cell::diagnosis::experiment::information::{Open, Outlook, Sensors};
 use idc_cell::diagnosis::experiment::limits::{Limits, Movable};
 use idc_cell::diagnosis::experiment::programme::HOLD;
@@ -448,7 +449,14 @@ fn numbers_are_known_as_well_as_by_a_d_optimal_multisine() {
         limits.force = 1.1 * forces.fold(0.0, f64::max);
         let one = std::slice::from_ref(open);
         let settings = ChoiceSettings::default();
-        let chosen = choose(one, &sensors(), &limits, &settings, &mut |_, _| ()).unwrap();
+        let chosen = choose(
+            one,
+            (&sensors(), &Coverage::default()),
+            &limits,
+            &settings,
+            &mut |_, _| (),
+        )
+        .unwrap();
         let (multisine, [before, at_end]) = optimal((open, &sensors(), &limits), place as u64);
         let of_own = half_width(open, &[chosen.programme.inputs(&limits)]);
         let by_fixed = of_own - half_width(open, &fixed);

@@ -11,6 +11,7 @@ use super::difference::mismatch::intervals;
 use super::difference::regime::regimes;
 use super::difference::remaining::Remaining;
 use super::effort::Effort;
+use super::experiment::coverage::Coverage;
 use super::experiment::next_experiment::{Separation, separations};
 use super::fit::cross_validation::{Depth, left_out};
 use super::fit::free::Free;
@@ -106,6 +107,11 @@ pub fn diagnose(
         as_nominal: evidence.predict(&case.nominal, false, None),
         baseline,
         unseen,
+        coverage: Coverage::of(
+            &case.limits,
+            &evidence,
+            &ranked[0].hypothesis.fit.prediction,
+        ),
         experiments,
         ranked,
         cleanings,

@@ -1,6 +1,7 @@
 //! Experiments that a bench can do, within what its recordings show that it does.
 
 pub mod choice;
+pub mod coverage;
 pub mod information;
 pub mod inseparable;
 pub mod limits;

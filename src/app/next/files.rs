@@ -169,6 +169,7 @@ pub(super) fn json(proposal: &Proposal) -> Value {
         "none_of_these": round(*none_of_these),
         "expected_probability_if_one_of_these": proposal.expected_probability().map(round),
         "information_on_which_nat": round(chosen.expected.which),
+        "information_on_laws_beyond_nat": round(chosen.beyond),
         "information_on_how_much_nat": round(chosen.expected.how_much),
         "largest_force_n": (chosen.extremes.force * 10.0).round() / 10.0,
         "largest_stroke_m": (chosen.extremes.stroke * 1e4).round() / 1e4,

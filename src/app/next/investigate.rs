@@ -344,7 +344,11 @@ pub(in super::super) fn investigate(
     };
     let record = record(&stop, &odds, &asked, start.elapsed().as_secs_f64(), &found);
     let name = &case_name;
-    let page = page(&stop, (&odds, &asked), (&found.answer, name));
+    let visited = found
+        .diagnosis
+        .as_ref()
+        .and_then(|own| own.coverage.words());
+    let page = page(&stop, (&odds, &asked), (&found.answer, name), visited);
     let document = format!("{record:#}\n");
     let texts = [
         (IMPROVED, found.improved.as_str()),
@@ -400,7 +404,7 @@ fn ask(
         let gained = match proposal.open.len() {
             1 => expected.how_much,
             _ => expected.which,
-        };
+        } + proposal.chosen.beyond;
         if gained < WORTH {
             return Ok(Next::Nothing(proposal.left_open()));
         }
@@ -471,6 +475,7 @@ fn page(
     stop: &Stop,
     (odds, asked): (&[Odds], &[Asked]),
     (answer, case): (&Answer, &str),
+    visited: Option<String>,
 ) -> Document<'static> {
     let last = odds.last();
     let best = last.and_then(|odds| odds.open.first());
@@ -490,6 +495,7 @@ fn page(
     let table = table(odds, asked, &names);
     let drawn = (!asked.is_empty()).then(|| Block::Panel(tree(odds, asked, &names)));
     let mut blocks: Vec<Block<'_>> = drawn.into_iter().chain([Block::Table(table)]).collect();
+    blocks.extend(visited.map(Block::Paragraph));
     if let Stop::NoExperiment(left_open) = stop {
         blocks.extend(left_open.iter().cloned().map(Block::Paragraph));
     }

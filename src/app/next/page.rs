@@ -43,7 +43,12 @@ pub(super) fn of_proposal(proposal: &Proposal, case: &str) -> Document<'static> 
         Column::list("explanation | #probability now | #expected afterwards if it is right");
     let table = Table::new("", columns, rows.chain([none]).collect());
     let left_open = proposal.left_open().into_iter().map(Block::Paragraph);
-    let of_open = [Block::Table(table)].into_iter().chain(left_open).collect();
+    let visited = proposal.coverage.clone().map(Block::Paragraph);
+    let of_open = [Block::Table(table)]
+        .into_iter()
+        .chain(visited)
+        .chain(left_open)
+        .collect();
     let steps = chosen.programme.instructions(&proposal.limits).into_iter();
     let panels = panels(proposal).into_iter().map(Block::Panel).collect();
     Document {

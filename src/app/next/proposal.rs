@@ -95,6 +95,8 @@ pub(super) struct Proposal {
     pub sensors: Sensors,
     pub limits: Limits,
     pub chosen: Chosen,
+    /// What the recordings have been to, as a sentence.
+    pub coverage: Option<String>,
     /// What the chosen one does, as the simulator takes it.
     pub inputs: PlantInputs,
     /// Pairs of explanations that it leaves open.
@@ -121,13 +123,20 @@ impl Proposal {
         )
         .map_err(NextError::Limits)?;
         let settings = allowed.settings(seed);
-        let chosen =
-            choose(&open, &sensors, &limits, &settings, observer).map_err(NextError::Limits)?;
+        let chosen = choose(
+            &open,
+            (&sensors, &diagnosis.coverage),
+            &limits,
+            &settings,
+            observer,
+        )
+        .map_err(NextError::Limits)?;
         let inputs = chosen.programme.inputs(&limits);
         let odds = &chosen.expected.odds;
         Ok(Self {
             none_of_these: diagnosis.none_of_these(),
             inseparable: inseparable(&open, (&sensors, odds), &inputs),
+            coverage: diagnosis.coverage.words(),
             inputs,
             open,
             sensors,

@@ -8,6 +8,7 @@ use crate::diagnosis::difference::mismatch::Interval;
 use crate::diagnosis::difference::regime::Regime;
 use crate::diagnosis::difference::remaining::Remaining;
 use crate::diagnosis::effort::EffortReport;
+use crate::diagnosis::experiment::coverage::Coverage;
 use crate::diagnosis::experiment::next_experiment::Separation;
 use crate::diagnosis::fit::free::Free;
 use crate::diagnosis::fit::hypothesis::Hypothesis;
@@ -121,6 +122,8 @@ pub struct Diagnosis {
     pub baseline: Baseline,
     /// Name of the recording to be predicted, and errors of its prediction where it has measured columns.
     pub unseen: Option<(String, Vec<Unseen>)>,
+    /// What the recordings have been to of the range within the limits.
+    pub coverage: Coverage,
     /// Experiments that would tell the best from the next, best first; none where there is no next.
     pub experiments: Vec<Separation>,
 }

@@ -1,10 +1,10 @@
 //! The choice of an experiment: programmes drawn within the limits and changed where that gains, by what each is expected to tell per second.
 //!
 //! ```text
-//! value = (I + w L) / (T + c)
+//! value = (I + E + w L) / (T + c)
 //! ```
 //!
-//! I information on which explanation is right, L on how large its numbers are [nat], T length of the recording, c cost of preparing it, both in seconds; w is
+//! I information on which explanation is right, E on whether a law acts where no recording was (`coverage.rs`), L on how large its numbers are [nat], T length of the recording, c cost of preparing it, both in seconds; w is
 //! small as long as it is open which, and one once that is settled.
 
 use nalgebra::DVector;
@@ -13,6 +13,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
+use super::coverage::Coverage;
 use super::information::{Expected, Open, Outlook, Sensors, entropy, shares_of};
 use super::limits::{LimitError, Limits};
 use super::programme::Programme;
@@ -71,6 +72,8 @@ pub struct Chosen {
     pub programme: Programme,
     /// What it is expected to tell.
     pub expected: Expected,
+    /// Information on whether a law acts where no recording was [nat].
+    pub beyond: f64,
     /// Its value [nat/s].
     pub value: f64,
     /// What no draw of any explanation's numbers passes.
@@ -104,13 +107,18 @@ impl Extremes {
 /// None that keeps the force on the part and the stroke, or whose motion can be predicted.
 pub fn choose(
     open: &[Open],
-    sensors: &Sensors,
+    (sensors, coverage): (&Sensors, &Coverage),
     limits: &Limits,
     settings: &ChoiceSettings,
     observer: &mut dyn FnMut(usize, usize),
 ) -> Result<Chosen, LimitError> {
     let mut random = ChaCha8Rng::seed_from_u64(settings.seed);
-    let mut choice = Choice::new((open, sensors, limits), settings.preparation, &mut random);
+    let mut choice = Choice::new(
+        (open, sensors, limits),
+        coverage,
+        settings.preparation,
+        &mut random,
+    );
     let more = (OF / open.len() as f64).max(1.0);
     let programmes = (more * settings.programmes as f64).round() as usize;
     let drawn = (DRAWN * programmes as f64).ceil() as usize;
@@ -163,6 +171,7 @@ struct Choice<'a> {
     /// Weight of a number's information [1].
     weight: f64,
     preparation: f64,
+    coverage: &'a Coverage,
     /// Programmes that are worth most, the best first.
     kept: Vec<Chosen>,
     /// Least of each over the programmes.
@@ -174,6 +183,7 @@ impl<'a> Choice<'a> {
     /// One of which nothing has been looked at; `preparation` is the cost of preparing a recording [s].
     fn new(
         of: (&'a [Open], &'a Sensors, &'a Limits),
+        coverage: &'a Coverage,
         preparation: f64,
         random: &mut ChaCha8Rng,
     ) -> Self {
@@ -185,6 +195,7 @@ impl<'a> Choice<'a> {
             is_open,
             weight: if is_open { BESIDE } else { 1.0 },
             preparation,
+            coverage,
             kept: Vec::new(),
             least: Extremes {
                 force: f64::INFINITY,
@@ -203,7 +214,8 @@ impl<'a> Choice<'a> {
         let time = programme.duration() + self.preparation;
         let full = self.kept.len() == KEPT;
         // Derivatives are most of the work: of what could not be among the best they are not asked for.
-        let most = outlook.most_on_which() + self.weight * self.most_on_numbers;
+        let beyond = self.coverage.information(outlook.likeliest());
+        let most = outlook.most_on_which() + beyond + self.weight * self.most_on_numbers;
         if full && self.is_open && most / time <= self.kept[KEPT - 1].value {
             return None;
         }
@@ -213,7 +225,7 @@ impl<'a> Choice<'a> {
         }
         let expected = outlook.expected();
         self.most_on_numbers = expected.how_much.max(self.most_on_numbers);
-        let gained = expected.which + self.weight * expected.how_much;
+        let gained = expected.which + beyond + self.weight * expected.how_much;
         let value = gained / time;
         if gained < least {
             return None;
@@ -233,6 +245,7 @@ impl<'a> Choice<'a> {
         self.kept.push(Chosen {
             programme: programme.clone(),
             expected,
+            beyond,
             value,
             extremes,
         });
@@ -357,7 +370,7 @@ mod tests {
     fn chosen(open: &[Open], limits: &Limits, programmes: usize) -> Result<Chosen, LimitError> {
         choose(
             open,
-            &sensors(),
+            (&sensors(), &Coverage::default()),
             limits,
             &settings(programmes),
             &mut |_, _| (),
@@ -439,7 +452,8 @@ mod tests {
                     start: 0.0,
                 }),
             };
-            let mut choice = Choice::new((&gained, &sensors, &limits), 15.0, &mut seeded());
+            let none = Coverage::default();
+            let mut choice = Choice::new((&gained, &sensors, &limits), &none, 15.0, &mut seeded());
             choice.look(&programme, 0.0);
             (choice.kept.len(), choice.least.force)
         };
@@ -496,7 +510,13 @@ mod tests {
                 seed,
                 ..settings(3)
             };
-            let Ok(found) = choose(&open, &sensors(), &gentle, &settings, &mut |_, _| ()) else {
+            let Ok(found) = choose(
+                &open,
+                (&sensors(), &Coverage::default()),
+                &gentle,
+                &settings,
+                &mut |_, _| (),
+            ) else {
                 continue;
             };
             let inputs = found.programme.inputs(&gentle);

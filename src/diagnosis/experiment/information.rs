@@ -19,7 +19,7 @@ use crate::diagnosis::fit::free::Free;
 use crate::diagnosis::recordings::evidence::Evidence;
 use crate::diagnosis::recordings::predictability::sensitivity;
 use crate::diagnosis::search::scale::IMMATERIAL;
-use crate::plant::{CHANNELS, PlantInputs, PlantParameters, PlantTrajectory, simulate};
+use crate::plant::{CHANNELS, PlantInputs, PlantParameters, PlantTrajectory, Trajectory, simulate};
 
 /// Step of the difference quotients in the fit's coordinate, as in the fit [1].
 const STEP: f64 = 0.03;
@@ -317,6 +317,12 @@ impl<'a> Outlook<'a> {
             inputs,
             trajectories,
         }
+    }
+
+    /// What the likeliest explanation gives.
+    #[must_use]
+    pub fn likeliest(&self) -> &Trajectory {
+        &self.trajectories[0].truth
     }
 
     /// Largest sensitivity of the motion over the explanations, as [`sensitivity`] has it [1].

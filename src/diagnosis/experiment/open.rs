@@ -38,7 +38,7 @@ impl Diagnosis {
     }
 
     /// Probability that none of the explanations holds [1]: what the best leaves beyond noise over that and what it gains over the nominal model, and no less than
-    /// what is stated against the least certain of its effects, were there no other explanation beside it.
+    /// what is stated against the least certain of its effects, were there no other explanation beside it, or what a law has that acts beyond what the recordings have been to.
     #[must_use]
     pub fn none_of_these(&self) -> f64 {
         let best = &self.best().fit;
@@ -54,7 +54,8 @@ impl Diagnosis {
         let names = self.best().effects.iter().map(|effect| effect.name);
         let certain = names.chain(unlisted).map(|name| self.certain_alone(name));
         let doubted = 1.0 - certain.fold(1.0, f64::min);
-        left.max(doubted).clamp(NONE_OF_THESE, 1.0 - NONE_OF_THESE)
+        let beyond = self.coverage.probability_beyond();
+        (left.max(doubted).max(NONE_OF_THESE + beyond)).min(1.0 - NONE_OF_THESE)
     }
 
     fn open_of(&self, ranked: &Ranked, probability: f64) -> Open {
