@@ -5,7 +5,7 @@
 //! ```
 //!
 //! I information on which explanation is right, E on whether a law acts where no recording was (`coverage.rs`), L on how large its numbers are [nat], T length of the recording, c cost of preparing it, both in seconds; w is
-//! small as long as it is open which, and one once that is settled.
+//! small as long as it is open which, or whether there is such a law, and one once that is settled.
 
 use nalgebra::DVector;
 use rand::SeedableRng;
@@ -188,7 +188,10 @@ impl<'a> Choice<'a> {
         random: &mut ChaCha8Rng,
     ) -> Self {
         let (open, ..) = of;
-        let is_open = entropy(&shares_of(open)) > OPEN;
+        let beyond = coverage.probability_beyond();
+        let is_open = [shares_of(open), vec![beyond, 1.0 - beyond]]
+            .iter()
+            .any(|odds| entropy(odds) > OPEN);
         Self {
             of,
             plants: open.iter().map(|own| draws(own, random)).collect(),

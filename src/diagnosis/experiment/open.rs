@@ -38,7 +38,7 @@ impl Diagnosis {
     }
 
     /// Probability that none of the explanations holds [1]: what the best leaves beyond noise over that and what it gains over the nominal model, and no less than
-    /// what is stated against the least certain of its effects, were there no other explanation beside it, or what a law has that acts beyond what the recordings have been to.
+    /// what is stated against the least certain of its effects, were there no other explanation beside it, or that of a law that acts beyond what the recordings have been to.
     #[must_use]
     pub fn none_of_these(&self) -> f64 {
         let best = &self.best().fit;
