@@ -101,7 +101,7 @@ impl Coverage {
                 .count()
         });
         let found = BEYOND * self.share(new.sum());
-        entropy(&[found, 1.0 - found])
+        entropy(&[found, 1.0 - found]).max(0.0)
     }
 
     /// A sentence on it; none where no limit is stated.

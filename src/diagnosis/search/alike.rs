@@ -3,13 +3,15 @@
 
 use rayon::prelude::*;
 
+use super::finish::LIGHTER;
 use super::progress::{Observer, Step};
+use super::rivals::{BEHIND, HOPELESS};
 use super::ruled_out::exchanges;
 use super::scale::Scale;
 use super::{Search, same};
 use crate::diagnosis::fit::free::{Free, free_of};
 use crate::diagnosis::fit::hypothesis::{Hypothesis, is_equivalent};
-use crate::diagnosis::fit::{FULL, Limit};
+use crate::diagnosis::fit::{FULL, Limit, ROUGH, Stage};
 use crate::effects::Effect;
 use crate::plant::DeviceParts;
 
@@ -30,7 +32,8 @@ impl Search<'_> {
             if self.is_spent() {
                 break;
             }
-            let Some(fitted) = self.at_each_start(&effects, &best) else {
+            let to = (FULL, Limit::FULL);
+            let Some(fitted) = self.at_each_start(&effects, &best, to, Self::score) else {
                 continue;
             };
             let score = self.score(&fitted);
@@ -52,7 +55,7 @@ impl Search<'_> {
         }
     }
 
-    /// Adds what has another law of its kind in the place of one of the best explanation's, where that was not fitted: where tolerances explain as much as the law
+    /// Adds what has another law of its kind in the place of one of the best explanation's, where that was not fitted and a rough fit does not rule it out: where tolerances explain as much as the law
     /// gains, a rough look promises its like nothing, and the law would be stated for certain beside nothing.
     pub(super) fn add_unfitted_alike(
         &self,
@@ -70,9 +73,13 @@ impl Search<'_> {
             fitted.any(|h| h.unlisted().is_none() && h.names() == names)
         };
         let all = exchanges(self, best);
+        let reach = self.rough_score(best) + BEHIND;
+        let roughly = (ROUGH, Limit::of(LIGHTER));
         let more: Vec<Hypothesis> = (all.iter().filter(|effects| !is_fitted(effects)))
             .take_while(|_| !self.is_spent())
-            .filter_map(|effects| self.at_each_start(effects, best))
+            .filter_map(|effects| self.at_each_start(effects, best, roughly, Self::rough_score))
+            .filter(|alike| self.rough_score(alike) < reach)
+            .map(|alike| self.rival(&alike, self.score(best), HOPELESS))
             .collect();
         for h in &more {
             observer(&Step::Variation.of(h, format!("alike {:.1}", self.score(h))));
@@ -98,10 +105,12 @@ impl Search<'_> {
     }
 
     /// The best of the fits from each start of the law that is not the other's; none of one that has no start.
-    pub(super) fn at_each_start(
+    fn at_each_start(
         &self,
         effects: &[&'static Effect],
         other: &Hypothesis,
+        to: (&[Stage], Limit),
+        score: fn(&Self, &Hypothesis) -> f64,
     ) -> Option<Hypothesis> {
         let pairs = effects.iter().zip(&other.effects);
         let index = pairs
@@ -112,10 +121,10 @@ impl Search<'_> {
         }
         let starts = effects[index].starts(&self.clues(other, &[], &[]));
         let fitted: Vec<Hypothesis> = (starts.par_iter())
-            .map(|start| self.at_start(effects, other, (index, start)))
+            .map(|start| self.at_start(effects, other, (index, start), to))
             .collect();
         let best = fitted.into_iter();
-        best.min_by(|a, b| self.score(a).total_cmp(&self.score(b)))
+        best.min_by(|a, b| score(self, a).total_cmp(&score(self, b)))
     }
 
     fn at_start(
@@ -123,6 +132,7 @@ impl Search<'_> {
         effects: &[&'static Effect],
         other: &Hypothesis,
         (index, start): (usize, &[f64]),
+        (stages, limit): (&[Stage], Limit),
     ) -> Hypothesis {
         let there = &other.fit.prediction.plant;
         let mut free: Vec<Free> = self.tolerated.iter().map(|f| f.from_where(there)).collect();
@@ -138,7 +148,7 @@ impl Search<'_> {
             free.extend(own);
         }
         let from = (&self.nominal, None);
-        self.fitted(effects.to_vec(), from, &free, FULL, Limit::FULL)
+        self.fitted(effects.to_vec(), from, &free, stages, limit)
     }
 }
 

@@ -9,11 +9,11 @@ use crate::diagnosis::fit::{Limit, ROUGH, jacobian};
 use crate::plant::DeviceParts;
 
 /// Rough score behind the best at which a rival is not fitted in full [1]: a full fit may gain that.
-const BEHIND: f64 = 60.0;
+pub(super) const BEHIND: f64 = 60.0;
 /// Rivals that are fitted in full, at most.
 const MOST: usize = 14;
 /// Score behind the best at which a rival is given up before the finest measure [1].
-const HOPELESS: f64 = 60.0;
+pub(super) const HOPELESS: f64 = 60.0;
 
 impl Search<'_> {
     /// Adds what has another effect in the place of one of the best explanation's, or one effect where it has none; the best may change.
