@@ -223,7 +223,7 @@ mod tests {
         let mut empty = 0;
         for (most, values) in most.iter().zip(values) {
             for part in 0..10 {
-                let (low, high) = (0.1 * part as f64 * most, 0.1 * (part + 1) as f64 * most);
+                let [low, high] = [part, part + 1].map(|end| 0.1 * f64::from(end) * most);
                 let within = |x: &&f64| (**x >= low || part == 0) && (**x < high || part == 9);
                 empty += usize::from(values.iter().filter(within).count() < 3);
             }
