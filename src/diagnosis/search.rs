@@ -204,10 +204,6 @@ impl Search<'_> {
         weighed.add_nominal(&mut full, observer);
         weighed.drop_below_noise(&mut full, scale, observer);
         weighed.add_close(&mut full, &all, scale, observer);
-        // In a cell, where that takes minutes, `Settings::rivals` asks for it.
-        if full.first().is_some_and(|best| scale.is_explained(best)) && !self.is_in_cell() {
-            weighed.add_unfitted_alike(&mut full, observer);
-        }
         weighed.add_beyond(&mut full, (unexplained, &all), observer);
         let roughly = self.tried_roughly(&full, &all, (unexplained, noise));
         (full, roughly, weighed.model_error)

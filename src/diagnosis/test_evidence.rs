@@ -66,24 +66,6 @@ pub(super) fn free() -> Free {
     }
 }
 
-/// Both orifices, known within 5 %.
-pub(super) fn orifices_within_tolerances() -> Vec<Free> {
-    let tolerated = [&registry::SUPPLY_ORIFICE, &registry::EXHAUST_ORIFICE].map(|number| {
-        let mean = number.quantity().get(&plant());
-        Free {
-            quantity: number.quantity(),
-            start: mean,
-            coordinate: Coordinate::Logarithmic,
-            bounds: [0.9 * mean, 1.1 * mean],
-            prior: Prior::Normal {
-                mean,
-                deviation: 0.05 * mean,
-            },
-        }
-    });
-    tolerated.to_vec()
-}
-
 /// A fit that leaves these residuals, of one free number with these derivatives.
 pub(super) fn fit(residuals: Vec<f64>, column: Vec<f64>, value: f64) -> Fit {
     let known: f64 = column.iter().map(|c| c * c).sum();

@@ -4,16 +4,18 @@ use rayon::prelude::*;
 
 use super::Search;
 use super::progress::{Observer, Step};
-use crate::diagnosis::fit::hypothesis::Hypothesis;
+use super::ruled_out::exchanges;
+use crate::diagnosis::fit::hypothesis::{Hypothesis, is_equivalent};
 use crate::diagnosis::fit::{Limit, ROUGH, jacobian};
+use crate::effects::Effect;
 use crate::plant::DeviceParts;
 
 /// Rough score behind the best at which a rival is not fitted in full [1]: a full fit may gain that.
-pub(super) const BEHIND: f64 = 60.0;
+const BEHIND: f64 = 60.0;
 /// Rivals that are fitted in full, at most.
 const MOST: usize = 14;
 /// Score behind the best at which a rival is given up before the finest measure [1].
-pub(super) const HOPELESS: f64 = 60.0;
+const HOPELESS: f64 = 60.0;
 
 impl Search<'_> {
     /// Adds what has another effect in the place of one of the best explanation's, or one effect where it has none; the best may change.
@@ -53,15 +55,49 @@ impl Search<'_> {
         let close: Vec<&Hypothesis> = (rough.iter().take(MOST))
             .take_while(|h| self.rough_score(h) < near)
             .collect();
-        let full: Vec<Hypothesis> = close
+        let mut full: Vec<Hypothesis> = close
             .par_iter()
             .map(|h| self.rival(h, score, HOPELESS))
             .collect();
+        full.extend(self.alike_rivals(best, found, &full));
         for h in &full {
             observer(&Step::Variation.of(h, format!("rival {:.1}", self.score(h))));
         }
-        self.beside_best(found, full);
-        self.add_unfitted_alike(found, observer);
+        let better = (full.iter())
+            .filter(|h| self.score(h) < score && !is_equivalent(h, best))
+            .min_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+        let better = better.map(Hypothesis::names);
+        found.extend(full);
+        if let Some(place) = better.and_then(|names| found.iter().position(|h| h.names() == names))
+        {
+            let better = found.remove(place);
+            found.insert(0, better);
+        }
+        found[1..].sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+    }
+
+    /// What has another law of its kind in the place of one of the best explanation's, but for what is known already: a look at what the best does not explain cannot see
+    /// what would explain as much.
+    fn alike_rivals(
+        &self,
+        best: &Hypothesis,
+        found: &[Hypothesis],
+        more: &[Hypothesis],
+    ) -> Vec<Hypothesis> {
+        if best.unlisted().is_some() {
+            return Vec::new();
+        }
+        let is_known = |effects: &[&'static Effect]| {
+            let mut names: Vec<&str> = effects.iter().map(|effect| effect.name).collect();
+            names.sort_unstable();
+            let mut known = found.iter().chain(more);
+            known.any(|h| h.unlisted().is_none() && h.names() == names)
+        };
+        let all = exchanges(self, best);
+        (all.iter().filter(|effects| !is_known(effects)))
+            .take_while(|_| !self.is_spent())
+            .filter_map(|effects| self.at_each_start(effects, best))
+            .collect()
     }
 
     /// Explanations of one effect less, beside which others are looked for: roughly, with their derivatives.
@@ -94,9 +130,11 @@ impl Search<'_> {
 mod tests {
     use super::super::ruled_out::variant;
     use crate::diagnosis::fit::FULL;
+    use crate::diagnosis::fit::free::{Free, Prior};
     use crate::diagnosis::fit::hypothesis::Hypothesis;
-    use crate::diagnosis::test_evidence::{evidence_of, orifices_within_tolerances, plant, search};
-    use crate::effects::{CATALOGUE, NUMBERS_OFF};
+    use crate::diagnosis::test_evidence::{evidence_of, plant, search};
+    use crate::effects::{CATALOGUE, Coordinate, NUMBERS_OFF};
+    use crate::plant::registry::{EXHAUST_ORIFICE, SUPPLY_ORIFICE};
 
     /// Where the tolerances explain what there is, a look gives no effect a gain: a supply restriction was stated at 93 % where the temperature of the sheet was off, for
     /// the discharge coefficient, which acts as that does, was not among the seven effects that the look kept.
@@ -106,7 +144,20 @@ mod tests {
         truth.device.supply_orifice *= 0.97;
         let evidence = evidence_of(&truth, vec![vec![1.5e5; 126], vec![2.5e5; 126]]);
         let mut search = search(&evidence);
-        search.tolerated = orifices_within_tolerances();
+        let tolerated = [&SUPPLY_ORIFICE, &EXHAUST_ORIFICE].map(|number| {
+            let mean = number.quantity().get(&plant());
+            Free {
+                quantity: number.quantity(),
+                start: mean,
+                coordinate: Coordinate::Logarithmic,
+                bounds: [0.9 * mean, 1.1 * mean],
+                prior: Prior::Normal {
+                    mean,
+                    deviation: 0.05 * mean,
+                },
+            }
+        });
+        search.tolerated = tolerated.to_vec();
         search.candidates = CATALOGUE.iter().chain(&NUMBERS_OFF).collect();
         let effect = |name: &str| {
             let mut all = search.candidates.iter().copied();
