@@ -107,11 +107,7 @@ pub fn diagnose(
         as_nominal: evidence.predict(&case.nominal, false, None),
         baseline,
         unseen,
-        coverage: Coverage::of(
-            &case.limits,
-            &evidence,
-            &ranked[0].hypothesis.fit.prediction,
-        ),
+        coverage: Coverage::of(&case.limits, &evidence, &best.fit.prediction),
         experiments,
         ranked,
         cleanings,
