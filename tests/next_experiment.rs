@@ -95,8 +95,20 @@ fn an_experiment_is_written_as_something_that_runs_within_limits() {
     let sum: f64 = probabilities
         .map(|own| own["probability"].as_f64().unwrap())
         .sum();
-    let all = sum + next["none_of_these"].as_f64().unwrap();
+    let none = next["none_of_these"].as_f64().unwrap();
+    let all = sum + none;
     assert!((all - 1.0).abs() < 1e-3, "{all}");
+    // What the report states of the range is counted.
+    let report = std::fs::read_to_string(bench.path("next/report.html")).unwrap();
+    let (_, beyond) = report.split_once("its probability, ").unwrap();
+    let end = beyond
+        .find(|c: char| !c.is_ascii_digit() && c != '.')
+        .unwrap();
+    let percent: f64 = beyond[..end].parse().unwrap();
+    assert!(
+        percent > 0.0 && none >= 0.005 + 0.01 * percent - 1e-3,
+        "{none}, {percent} %"
+    );
 
     assert_bench_carries_out(&bench, time, pressures);
 }

@@ -402,6 +402,8 @@ fn ask(
         let expected = &proposal.chosen.expected;
         // Of one explanation that is not certain the recording that tells most of its numbers says most as well of whether it holds.
         let gained = match proposal.open.len() {
+            // Where but the range is in doubt, its numbers say nothing of that.
+            1 if diagnosis.is_doubted_for_its_range() => 0.0,
             1 => expected.how_much,
             _ => expected.which,
         } + proposal.chosen.beyond;

@@ -333,8 +333,9 @@ mod tests {
     use super::*;
     use crate::diagnosis::fit::free::free_of;
     use crate::diagnosis::recordings::evidence::Evidence;
-    use crate::diagnosis::test_evidence::{evidence, plant};
+    use crate::diagnosis::test_evidence::{evidence, evidence_of, plant};
     use crate::effects::CATALOGUE;
+    use crate::plant::OperatingLimits;
     use nalgebra::DMatrix;
 
     fn limits() -> Limits {
@@ -410,6 +411,30 @@ mod tests {
             many.value,
             few.value
         );
+    }
+
+    /// Where no experiment distinguishes the explanations and a law is possible beyond the recordings, the experiment goes there.
+    #[test]
+    fn where_no_recording_was_is_where_an_experiment_goes() {
+        let same = pair(|_| ());
+        let evidence = evidence_of(&plant(), vec![vec![0.3e5; 126]]);
+        let stated = OperatingLimits {
+            set_pressure: Some(3e5),
+            ..OperatingLimits::default()
+        };
+        let found = evidence.predict(&plant(), false, None);
+        let coverage = Coverage::of(&stated, &evidence, &found);
+        let go = |coverage: &Coverage| {
+            let of = (&sensors(), coverage);
+            choose(&same, of, &limits(), &settings(40), &mut |_, _| ()).unwrap()
+        };
+        let visits = go(&coverage);
+        assert!(visits.beyond > 0.2, "{}", visits.beyond);
+        let inputs = visits.programme.inputs(&limits());
+        let pressures = simulate(&plant(), &inputs).truth.pressures[0].clone();
+        let largest = pressures.into_iter().fold(0.0, f64::max) - plant().device.gas.atmosphere;
+        assert!(largest > 2e5, "{largest}");
+        assert_eq!(go(&Coverage::default()).beyond, 0.0);
     }
 
     /// What the part may bear is kept by every draw; where nothing keeps it, that is said with the least force found.

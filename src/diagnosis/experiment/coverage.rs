@@ -12,6 +12,7 @@
 use super::information::entropy;
 use crate::diagnosis::recordings::evidence::{Evidence, Prediction};
 use crate::plant::{OperatingLimits, PlantParameters, Trajectory};
+use crate::quantity::{listed, percent};
 
 /// P_0, probability that a law acts in a part of the range alone that no recording was in, were that all of it [1]: a judgement.
 const BEYOND: f64 = 0.1;
@@ -34,11 +35,12 @@ enum Variable {
 }
 
 impl Variable {
-    fn words(self) -> &'static str {
+    /// A value [SI] with its name, as people read it.
+    fn up_to(self, value: f64) -> String {
         match self {
-            Self::Pressure => "chamber pressure",
-            Self::Stroke => "stroke",
-            Self::Force => "contact force",
+            Self::Pressure => format!("chamber pressure up to {:.1} bar", value * 1e-5),
+            Self::Stroke => format!("stroke up to {:.0} mm", value * 1e3),
+            Self::Force => format!("contact force up to {value:.0} N"),
         }
     }
 }
@@ -110,13 +112,15 @@ impl Coverage {
         let own: Vec<String> = (self.ranges.iter())
             .map(|range| {
                 let visited = range.visited.iter().filter(|visited| **visited).count();
-                format!("{} {} %", range.of.words(), 100 * visited / PARTS)
+                let percent = 100 * visited / PARTS;
+                format!("{percent} % of the {}", range.of.up_to(range.most))
             })
             .collect();
         (!own.is_empty()).then(|| {
             format!(
-                "Of the range that the limits allow the recordings have been to: {}. A law that acts beyond that alone shows in none of them; it is counted with none of these.",
-                own.join(", ")
+                "Within the limits the recordings have been to {}. A law that acts only outside that shows in none of them: its probability, {}, is counted with none of these.",
+                listed(&own),
+                percent(self.probability_beyond())
             )
         })
     }
@@ -205,7 +209,7 @@ mod tests {
         Coverage::of(limits, &evidence, &evidence.predict(&plant(), false, None))
     }
 
-    /// Counted by ranks in place of parts: what lies within a tenth of the range of a sample's part has been visited.
+    /// Counted part by part, by its bounds in place of its number.
     #[test]
     fn what_was_visited_is_what_samples_lie_in() {
         let found = coverage(&limits(), &[1e5]);

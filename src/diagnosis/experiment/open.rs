@@ -54,8 +54,19 @@ impl Diagnosis {
         let names = self.best().effects.iter().map(|effect| effect.name);
         let certain = names.chain(unlisted).map(|name| self.certain_alone(name));
         let doubted = 1.0 - certain.fold(1.0, f64::min);
-        let beyond = self.coverage.probability_beyond();
-        (left.max(doubted).max(NONE_OF_THESE + beyond)).min(1.0 - NONE_OF_THESE)
+        left.max(doubted)
+            .clamp(self.least_none_of_these(), 1.0 - NONE_OF_THESE)
+    }
+
+    /// What it is at least: a law that no list holds may be anywhere, and where no recording was.
+    fn least_none_of_these(&self) -> f64 {
+        NONE_OF_THESE + self.coverage.probability_beyond()
+    }
+
+    /// Whether that none of these holds is as improbable as recordings of where these were can make it.
+    #[must_use]
+    pub fn is_doubted_for_its_range(&self) -> bool {
+        self.none_of_these() <= self.least_none_of_these()
     }
 
     fn open_of(&self, ranked: &Ranked, probability: f64) -> Open {
