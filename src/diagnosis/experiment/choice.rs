@@ -38,8 +38,8 @@ const BEYOND: f64 = 3.0;
 const SHORT: f64 = 0.2;
 /// Share of that time for programmes that are drawn, the others being changed ones [1].
 const DRAWN: f64 = 0.35;
-/// Time of devices that is simulated for each programme asked for: six explanations' for two seconds or so, with derivatives and draws [s].
-const SIMULATED: f64 = 100.0;
+/// Time of devices that is simulated for each programme asked for: that of six explanations for three seconds or so, with derivatives and draws [s].
+const SIMULATED: f64 = 240.0;
 /// Times that a programme which presses too hard is made gentler, and by how much more than its force asks for [1].
 const GENTLER: usize = 3;
 const MARGIN: f64 = 0.97;
@@ -49,7 +49,7 @@ const KEPT: usize = 6;
 /// What a choice is made by.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChoiceSettings {
-    /// Programmes of two seconds that are looked at where six explanations are open; where they are shorter or explanations fewer, more in the same time, and otherwise fewer.
+    /// Programmes of three seconds that are looked at where six explanations are open; otherwise as many as take the same time.
     pub programmes: usize,
     /// Seed of what is drawn.
     pub seed: u64,
@@ -403,7 +403,7 @@ mod tests {
     #[test]
     fn a_late_valve_is_sought_by_reversing_it() {
         let late = pair(|plant| plant.device.switching_delay = 2e-4);
-        let found = chosen(&late, &limits(), 60).unwrap();
+        let found = chosen(&late, &limits(), 9).unwrap();
         let extends: Vec<bool> = found.programme.segments.iter().map(|s| s.extends).collect();
         assert!(
             extends.windows(2).any(|two| two[0] != two[1]),
@@ -414,14 +414,14 @@ mod tests {
             retracts: false,
             ..limits()
         };
-        let found = chosen(&late, &left_alone, 20).unwrap();
+        let found = chosen(&late, &left_alone, 3).unwrap();
         assert!(found.expected.which < 1e-9, "{}", found.expected.which);
     }
 
     #[test]
     fn the_same_seed_chooses_the_same_and_more_programmes_no_worse() {
         let pair = pair(|plant| plant.device.moving_mass *= 1.002);
-        let [few, again, many] = [20, 20, 80].map(|count| chosen(&pair, &limits(), count).unwrap());
+        let [few, again, many] = [3, 3, 12].map(|count| chosen(&pair, &limits(), count).unwrap());
         assert_eq!(few.programme, again.programme);
         assert!(
             many.value >= 0.9 * few.value,
@@ -444,7 +444,7 @@ mod tests {
         let coverage = Coverage::of(&stated, &evidence, &found);
         let go = |coverage: &Coverage| {
             let of = (&sensors(), coverage);
-            choose(&same, of, &limits(), &settings(40), &mut |_, _| ()).unwrap()
+            choose(&same, of, &limits(), &settings(6), &mut |_, _| ()).unwrap()
         };
         let visits = go(&coverage);
         assert!(visits.beyond > 0.2, "{}", visits.beyond);
@@ -463,7 +463,7 @@ mod tests {
             force: 150.0,
             ..limits()
         };
-        let found = chosen(&gained, &gentle, 60).unwrap();
+        let found = chosen(&gained, &gentle, 9).unwrap();
         assert!(found.extremes.force <= 150.0, "{}", found.extremes.force);
         let surface = Limits {
             force: 1e-3,
@@ -472,7 +472,7 @@ mod tests {
             retracts: false,
             ..limits()
         };
-        let error = chosen(&gained, &surface, 10).unwrap_err().to_string();
+        let error = chosen(&gained, &surface, 2).unwrap_err().to_string();
         assert!(
             error.contains("force_n") && error.contains("[limits]"),
             "{error}"
@@ -516,7 +516,7 @@ mod tests {
             stroke: 0.03,
             ..limits()
         };
-        let found = chosen(&gained, &short, 60).unwrap();
+        let found = chosen(&gained, &short, 9).unwrap();
         assert!(found.extremes.stroke <= 0.03, "{:?}", found.extremes);
         assert!(found.programme.surface().is_some());
         let open = Limits {
@@ -525,7 +525,7 @@ mod tests {
             set_pressure: [2e5, 3e5],
             ..short
         };
-        let error = chosen(&gained, &open, 10).unwrap_err().to_string();
+        let error = chosen(&gained, &open, 2).unwrap_err().to_string();
         assert!(error.contains("`stroke_m` = 0.0300 m"), "{error}");
     }
 
