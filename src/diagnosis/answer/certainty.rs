@@ -151,11 +151,6 @@ impl Diagnosis {
         other.effects.iter().all(known) && (other.unlisted().is_none() || best.unlisted().is_some())
     }
 
-    /// Whether an explanation has effects of the best one alone, and lacks one of them.
-    pub(in crate::diagnosis) fn is_best_without(&self, other: &Hypothesis, name: &str) -> bool {
-        !has(other, name) && self.is_within_best(other)
-    }
-
     /// Gain of the best explanation over the best one of a kind; infinite where none was fitted.
     fn gain_over(&self, of: &dyn Fn(&Hypothesis) -> bool) -> f64 {
         let own = &self.best().fit;

@@ -13,8 +13,6 @@ use crate::plant::CHANNELS;
 const LEAST: f64 = 1e-3;
 /// Explanations at most: others behind them are less likely than all of these.
 const MOST: usize = 6;
-/// Odds against the best from which an explanation that has all but one of its effects is open: what is said against that effect is said for it [1].
-const NEARLY: f64 = 0.1;
 /// Standard deviations of its sum of squares that noise alone may leave [1].
 const CHANCE: f64 = 3.0;
 /// Least probability that none of the explanations holds [1]: no list holds all laws.
@@ -24,10 +22,11 @@ impl Diagnosis {
     /// Explanations that are open, the likeliest first; their probabilities and that of none of these come to one.
     #[must_use]
     pub fn open(&self) -> Vec<Open> {
-        let mut open: Vec<(f64, &Ranked)> = (self.ranked.iter().map(|r| (self.odds_of(r), r)))
+        let odds = |r: &Ranked| r.odds.max(self.odds_by_what_is_left(&r.hypothesis));
+        let mut open: Vec<(f64, &Ranked)> = (self.ranked.iter().map(|r| (odds(r), r)))
             .filter(|(odds, _)| *odds >= LEAST)
             .collect();
-        open.sort_by(|a, b| b.0.total_cmp(&a.0));
+        open[1..].sort_by(|a, b| b.0.total_cmp(&a.0));
         open.truncate(MOST);
         let sum: f64 = open.iter().map(|(odds, _)| odds).sum();
         let any = 1.0 - self.none_of_these();
@@ -38,37 +37,8 @@ impl Diagnosis {
             .collect()
     }
 
-    /// Odds against the best [1], no less than what is left may come to, and than what is said against the effect of the best that it lacks.
-    fn odds_of(&self, ranked: &Ranked) -> f64 {
-        let lacked = self.names_of_best().filter(|name| {
-            let plainer = self.without(name);
-            plainer.is_some_and(|plainer| std::ptr::eq(plainer, ranked))
-        });
-        let against = lacked.map(|name| {
-            let certain = self.certain_alone(name).max(LEAST);
-            (1.0 - certain) / certain
-        });
-        let own = ranked.odds;
-        against.fold(
-            own.max(self.odds_by_what_is_left(&ranked.hypothesis)),
-            f64::max,
-        )
-    }
-
-    fn names_of_best(&self) -> impl Iterator<Item = &'static str> {
-        let unlisted = self.best().unlisted().map(|_| UNLISTED);
-        let effects = self.best().effects.iter().map(|effect| effect.name);
-        effects.chain(unlisted)
-    }
-
-    /// The likeliest explanation that has effects of the best alone but lacks this one, where it is nearly as likely as the best.
-    fn without(&self, name: &str) -> Option<&Ranked> {
-        let mut ranked = self.ranked.iter().filter(|r| r.odds >= NEARLY);
-        ranked.find(|r| self.is_best_without(&r.hypothesis, name))
-    }
-
     /// Probability that none of the explanations holds [1]: what the best leaves beyond noise over that and what it gains over the nominal model, and no less than
-    /// what is stated against the least certain of its effects, were there no other explanation beside it (but where one without that effect is nearly as likely), or that of a law that acts beyond what the recordings have been to.
+    /// what is stated against the least certain of its effects, were there no other explanation beside it, or that of a law that acts beyond what the recordings have been to.
     #[must_use]
     pub fn none_of_these(&self) -> f64 {
         let best = &self.best().fit;
@@ -80,10 +50,9 @@ impl Diagnosis {
             .sum::<f64>()
             - best.misfit;
         let left = left / (left + gained.max(0.0) + 1.0);
-        let alone = self
-            .names_of_best()
-            .filter(|name| self.without(name).is_none());
-        let certain = alone.map(|name| self.certain_alone(name));
+        let unlisted = self.best().unlisted().map(|_| UNLISTED);
+        let names = self.best().effects.iter().map(|effect| effect.name);
+        let certain = names.chain(unlisted).map(|name| self.certain_alone(name));
         let doubted = 1.0 - certain.fold(1.0, f64::min);
         left.max(doubted)
             .clamp(self.least_none_of_these(), 1.0 - NONE_OF_THESE)
