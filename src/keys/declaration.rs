@@ -543,15 +543,18 @@ pub(crate) fn given<'de, T: Filled, A: MapAccess<'de>>(
 }
 
 /// The value of a key that a file leaves out.
-pub(crate) fn left_out<T: Filled, E: Error>(key: &'static str, own: &Key) -> Result<T, E> {
+pub(crate) fn left_out<T: Filled>(
+    key: &'static str,
+    own: &Key,
+) -> Result<T, serde::de::value::Error> {
     let Some(default) = own.default.clone() else {
         if own.is_required && own.kinds.is_empty() {
-            return Err(E::missing_field(key));
+            return Err(Error::missing_field(key));
         }
-        return T::absent().ok_or_else(|| E::missing_field(key));
+        return T::absent().ok_or_else(|| Error::missing_field(key));
     };
-    let written = default.try_into::<T::Written>().map_err(E::custom)?;
-    T::filled(written, Unit::of_key(key)).map_err(E::custom)
+    let written = default.try_into::<T::Written>().map_err(Error::custom)?;
+    T::filled(written, Unit::of_key(key)).map_err(Error::custom)
 }
 
 /// A default in SI as a file would give it.
@@ -645,13 +648,24 @@ macro_rules! keys {
                     }
 
                     fn visit_map<A: serde::de::MapAccess<'de>>(self, mut map: A) -> Result<$table, A::Error> {
-                        $(let mut $field: Option<$type> = None;)+
+                        let mut given = Given::default();
                         while let Some(name) = map.next_key_seed($crate::keys::declaration::Name(NAMES))? {
                             match name {
-                                $($key => $field = Some($crate::keys::declaration::given(&mut map, $key)?),)+
+                                $($key => given.$field = Some($crate::keys::declaration::given(&mut map, $key)?),)+
                                 _ => {}
                             }
                         }
+                        given.completed().map_err(serde::de::Error::custom)
+                    }
+                }
+                /// What a file gives. Completed apart from where it is read, which is compiled for each kind of file.
+                #[derive(Default)]
+                struct Given {
+                    $($field: Option<$type>,)+
+                }
+                impl Given {
+                    fn completed(self) -> Result<$table, serde::de::value::Error> {
+                        let Given { $($field),+ } = self;
                         let mut keys = <$table as $crate::keys::declaration::Table>::keys().into_iter();
                         $(
                             let key = keys.next();

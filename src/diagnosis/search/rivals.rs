@@ -11,7 +11,7 @@ use crate::effects::Effect;
 use crate::plant::DeviceParts;
 
 /// Rough score behind the best at which a rival is not fitted in full [1]: a full fit may gain that.
-const BEHIND: f64 = 60.0;
+pub(super) const BEHIND: f64 = 60.0;
 /// Rivals that are fitted in full, at most.
 const MOST: usize = 14;
 /// Score behind the best at which a rival is given up before the finest measure [1].
@@ -96,7 +96,7 @@ impl Search<'_> {
         let all = exchanges(self, best);
         (all.iter().filter(|effects| !is_known(effects)))
             .take_while(|_| !self.is_spent())
-            .filter_map(|effects| self.at_each_start(effects, best))
+            .filter_map(|effects| self.at_each_start(effects, best, f64::INFINITY))
             .collect()
     }
 

@@ -49,9 +49,14 @@ impl Scale {
         SPREAD * (2.0 * self.noise).sqrt()
     }
 
+    /// Cost that a hypothesis which was fitted in full leaves beyond the noise's [1].
+    pub fn left(&self, hypothesis: &Hypothesis) -> f64 {
+        hypothesis.fit.cost() - self.count
+    }
+
     /// Whether a hypothesis that was fitted in full leaves noise, or no more than the idealisation of its laws.
     pub fn is_adequate(&self, hypothesis: &Hypothesis) -> bool {
-        let left = hypothesis.fit.cost() - self.count;
+        let left = self.left(hypothesis);
         let chance = SPREAD * (2.0 * self.count).sqrt();
         let idealised = match hypothesis.effects.len() {
             0 => 0.0,
@@ -63,8 +68,7 @@ impl Scale {
     /// Whether a hypothesis explains the mismatch but for a small share, whatever that is. Where the piston is held counts too: impacts that are met at
     /// slightly other times make a good explanation look bad.
     pub fn is_explained(&self, hypothesis: &Hypothesis) -> bool {
-        let fit = &hypothesis.fit;
-        let full = (fit.cost() - self.count) / (self.full - self.count);
+        let full = self.left(hypothesis) / (self.full - self.count);
         let rough = self.left_roughly(hypothesis);
         self.is_adequate(hypothesis) || full.min(rough) < UNEXPLAINED
     }
@@ -81,8 +85,7 @@ impl Scale {
 
     /// Whether a lighter hypothesis leaves more than noise, and the richer one explains at least half of that.
     pub fn is_needed(&self, richer: &Hypothesis, lighter: &Hypothesis) -> bool {
-        let left = |h: &Hypothesis| h.fit.cost() - self.count;
-        !self.is_adequate(lighter) && left(richer) < HALF * left(lighter)
+        !self.is_adequate(lighter) && self.left(richer) < HALF * self.left(lighter)
     }
 
     /// Whether it explains at least half.
@@ -92,8 +95,7 @@ impl Scale {
 
     /// Whether one more effect, or a richer law, could gain nothing that would be worth a mention.
     pub fn leaves_nothing_material(&self, hypothesis: &Hypothesis) -> bool {
-        let left = hypothesis.fit.cost() - self.count;
-        left < self.material_in_full(hypothesis.fit.cost())
+        self.left(hypothesis) < self.material_in_full(hypothesis.fit.cost())
     }
 
     /// Least gain of one more effect beside a hypothesis of a cost [1].
