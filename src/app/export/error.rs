@@ -21,7 +21,7 @@ pub enum ExportError {
     },
     /// No shared library.
     #[error(
-        "{looked}: there is no such file, expected the shared library of co-simulation units, which `{BUILD_COMMAND}` builds into target/release (--library names it elsewhere)"
+        "{looked}: there is no such file, expected the shared library of co-simulation units, which `{BUILD_COMMAND}` builds into target/release/examples (--library names it elsewhere)"
     )]
     NoLibrary {
         /// Where it was sought.
@@ -51,4 +51,4 @@ pub enum ExportError {
 }
 
 /// How the library is built.
-const BUILD_COMMAND: &str = "cargo rustc --release --lib --crate-type cdylib";
+const BUILD_COMMAND: &str = "cargo build --release --example co_simulation_unit";

@@ -33,11 +33,12 @@ saved and restored. The bench's own step is inside: at it the numbers are those
 of idc run. docs/FMU.md says how it is used and how exact it is.
 
 The unit takes along the shared library of co-simulation units, from beside this
-program, from ../lib, or from --library. Exit codes: 0 written, 2 bad input.
+program, from examples beside it, from ../lib, or from --library. Exit codes:
+0 written, 2 bad input.
 
 Examples:
   # Of a bench, for FMI 3.0, with its library. (takes minutes)
-  cargo rustc --release --lib --crate-type cdylib
+  cargo build --release --example co_simulation_unit
   idc export fmu scenarios/paper_step.toml --out runs/device.fmu
   # Of a diagnosed rig, for FMI 2.0. (takes minutes)
   idc export fmu runs/found/improved.toml --fmi 2 --out runs/found.fmu";
@@ -45,7 +46,7 @@ Examples:
 /// File of the device in the unit's resources.
 const DEVICE: &str = "device.toml";
 /// The library as cargo names it.
-const LIBRARY: &str = "libidc_cell.so";
+const LIBRARY: &str = "libco_simulation_unit.so";
 
 #[derive(Debug, Args)]
 pub(super) struct FmuArguments {
@@ -54,7 +55,7 @@ pub(super) struct FmuArguments {
     /// Version of FMI.
     #[arg(long, default_value = "3")]
     fmi: Version,
-    /// Shared library of co-simulation units [default: beside this program, or in ../lib].
+    /// Shared library of co-simulation units [default: beside this program, in examples, or in ../lib].
     #[arg(long, value_name = "FILE")]
     library: Option<PathBuf>,
     /// The unit [default: runs/<file's name>.fmu].
@@ -208,12 +209,15 @@ fn holds(bytes: &[u8], mark: &[u8]) -> bool {
     bytes.windows(mark.len()).any(|window| window == mark)
 }
 
-/// Beside the program, as cargo builds it; in ../lib, as it is installed.
+/// Beside the program; in examples there, as cargo builds it; in ../lib, as it is installed.
 fn usual_places() -> Vec<PathBuf> {
     let program = this_program().unwrap_or_default();
     let folder = program.parent().unwrap_or(Path::new("")).to_owned();
     let above = folder.parent().unwrap_or(Path::new(""));
-    vec![folder.join(LIBRARY), above.join("lib").join(LIBRARY)]
+    let examples = folder.join("examples");
+    [folder, examples, above.join("lib")]
+        .map(|place| place.join(LIBRARY))
+        .to_vec()
 }
 
 /// What was written.
