@@ -48,7 +48,8 @@ pub(super) struct Allowed {
     /// Cost of preparing a recording, as seconds of recording.
     #[arg(long, value_name = "SECONDS", default_value_t = 15.0, value_parser = seconds)]
     cost: f64,
-    /// Programmes that are looked at where six explanations are open; of fewer, more.
+    /// Programmes of three seconds that are looked at where six explanations are open; otherwise as
+    /// many as take the same time.
     #[arg(long, value_name = "COUNT", default_value_t = 240, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     programmes: u32,
     /// Seed of what is drawn.

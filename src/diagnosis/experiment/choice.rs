@@ -34,10 +34,12 @@ const SPARE: f64 = 1.01;
 const GAINS: f64 = 0.01;
 /// How far other draws may be beyond these: 5.6 standard deviations where these 20 are normal [1].
 const BEYOND: f64 = 3.0;
-/// Share of the programmes that are drawn, the others being changed ones [1].
+/// Duration that a programme counts for at least [s].
+const SHORT: f64 = 0.2;
+/// Share of that time for programmes that are drawn, the others being changed ones [1].
 const DRAWN: f64 = 0.35;
-/// Explanations for which as many programmes are looked at as are asked for; of fewer, more in the same time.
-const OF: f64 = 6.0;
+/// Time of devices that is simulated for each programme asked for: that of six explanations for three seconds or so, with derivatives and draws [s].
+const SIMULATED: f64 = 240.0;
 /// Times that a programme which presses too hard is made gentler, and by how much more than its force asks for [1].
 const GENTLER: usize = 3;
 const MARGIN: f64 = 0.97;
@@ -47,7 +49,7 @@ const KEPT: usize = 6;
 /// What a choice is made by.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChoiceSettings {
-    /// Programmes that are looked at where six explanations are open; of fewer, more in the same time.
+    /// Programmes of three seconds that are looked at where six explanations are open; otherwise as many as take the same time.
     pub programmes: usize,
     /// Seed of what is drawn.
     pub seed: u64,
@@ -101,7 +103,7 @@ impl Extremes {
     }
 }
 
-/// Chooses an experiment; `observer` is given programmes looked at and in all.
+/// Chooses an experiment; `observer` is given how many programmes' time has been simulated, and of how many in all.
 ///
 /// # Errors
 /// None that keeps the force on the part and the stroke, or whose motion can be predicted.
@@ -119,13 +121,15 @@ pub fn choose(
         settings.preparation,
         &mut random,
     );
-    let more = (OF / open.len() as f64).max(1.0);
-    let programmes = (more * settings.programmes as f64).round() as usize;
-    let drawn = (DRAWN * programmes as f64).ceil() as usize;
-    for index in 0..programmes {
-        observer(index, programmes);
+    for index in 0.. {
+        let share = choice.simulated / (SIMULATED * settings.programmes as f64);
+        let looked_at = (share.min(1.0) * settings.programmes as f64) as usize;
+        observer(looked_at, settings.programmes);
+        if share >= 1.0 {
+            break;
+        }
         let kept = &choice.kept;
-        let mut programme = match kept.is_empty() || index < drawn {
+        let mut programme = match kept.is_empty() || share < DRAWN {
             true => Programme::drawn(limits, &mut random),
             false => {
                 let which = index % kept.len();
@@ -143,7 +147,6 @@ pub fn choose(
             programme = programme.gentler(MARGIN * limits.force / force);
         }
     }
-    observer(programmes, programmes);
     let least = choice.least;
     match choice.kept.into_iter().next() {
         Some(best) => Ok(best),
@@ -177,6 +180,8 @@ struct Choice<'a> {
     /// Least of each over the programmes.
     least: Extremes,
     most_on_numbers: f64,
+    /// Time of devices that was simulated [s].
+    simulated: f64,
 }
 
 impl<'a> Choice<'a> {
@@ -206,7 +211,13 @@ impl<'a> Choice<'a> {
                 torque_share: f64::INFINITY,
             },
             most_on_numbers: 0.0,
+            simulated: 0.0,
         }
+    }
+
+    /// Counts what was simulated; a short programme is work as well.
+    fn count(&mut self, duration: f64, devices: usize) {
+        self.simulated += duration.max(SHORT) * devices as f64;
     }
 
     /// Keeps a programme whose information is at least so much [nat], and more than that of others; gives the force on the part where only that forbids it [N].
@@ -214,7 +225,10 @@ impl<'a> Choice<'a> {
         let (open, sensors, limits) = self.of;
         let inputs = programme.inputs(limits);
         let outlook = Outlook::of(open, sensors, &inputs);
-        let time = programme.duration() + self.preparation;
+        let duration = programme.duration();
+        let time = duration + self.preparation;
+        // Each explanation with what tells whether it can be predicted, and the rig without them.
+        self.count(duration, 2 * open.len() + 1);
         let full = self.kept.len() == KEPT;
         // Derivatives are most of the work: of what could not be among the best they are not asked for.
         let beyond = self.coverage.information(outlook.likeliest());
@@ -227,6 +241,8 @@ impl<'a> Choice<'a> {
             return None;
         }
         let expected = outlook.expected();
+        let derivatives: usize = open.iter().map(|own| own.free.len()).sum();
+        self.count(duration, derivatives);
         self.most_on_numbers = expected.how_much.max(self.most_on_numbers);
         let gained = expected.which + beyond + self.weight * expected.how_much;
         let value = gained / time;
@@ -238,6 +254,8 @@ impl<'a> Choice<'a> {
         }
         // Of a programme that would be kept, whether it may be done.
         let extremes = extremes_of(&self.plants, &inputs, limits.arm.as_ref());
+        let draws: usize = self.plants.iter().map(Vec::len).sum();
+        self.count(duration, draws);
         self.least = self.least.combined(extremes, f64::min);
         if extremes.stroke > limits.stroke || extremes.torque_share > 1.0 {
             return None;
@@ -385,7 +403,7 @@ mod tests {
     #[test]
     fn a_late_valve_is_sought_by_reversing_it() {
         let late = pair(|plant| plant.device.switching_delay = 2e-4);
-        let found = chosen(&late, &limits(), 60).unwrap();
+        let found = chosen(&late, &limits(), 9).unwrap();
         let extends: Vec<bool> = found.programme.segments.iter().map(|s| s.extends).collect();
         assert!(
             extends.windows(2).any(|two| two[0] != two[1]),
@@ -396,14 +414,14 @@ mod tests {
             retracts: false,
             ..limits()
         };
-        let found = chosen(&late, &left_alone, 20).unwrap();
+        let found = chosen(&late, &left_alone, 3).unwrap();
         assert!(found.expected.which < 1e-9, "{}", found.expected.which);
     }
 
     #[test]
     fn the_same_seed_chooses_the_same_and_more_programmes_no_worse() {
         let pair = pair(|plant| plant.device.moving_mass *= 1.002);
-        let [few, again, many] = [20, 20, 80].map(|count| chosen(&pair, &limits(), count).unwrap());
+        let [few, again, many] = [3, 3, 12].map(|count| chosen(&pair, &limits(), count).unwrap());
         assert_eq!(few.programme, again.programme);
         assert!(
             many.value >= 0.9 * few.value,
@@ -426,7 +444,7 @@ mod tests {
         let coverage = Coverage::of(&stated, &evidence, &found);
         let go = |coverage: &Coverage| {
             let of = (&sensors(), coverage);
-            choose(&same, of, &limits(), &settings(40), &mut |_, _| ()).unwrap()
+            choose(&same, of, &limits(), &settings(6), &mut |_, _| ()).unwrap()
         };
         let visits = go(&coverage);
         assert!(visits.beyond > 0.2, "{}", visits.beyond);
@@ -445,7 +463,7 @@ mod tests {
             force: 150.0,
             ..limits()
         };
-        let found = chosen(&gained, &gentle, 60).unwrap();
+        let found = chosen(&gained, &gentle, 9).unwrap();
         assert!(found.extremes.force <= 150.0, "{}", found.extremes.force);
         let surface = Limits {
             force: 1e-3,
@@ -454,7 +472,7 @@ mod tests {
             retracts: false,
             ..limits()
         };
-        let error = chosen(&gained, &surface, 10).unwrap_err().to_string();
+        let error = chosen(&gained, &surface, 2).unwrap_err().to_string();
         assert!(
             error.contains("force_n") && error.contains("[limits]"),
             "{error}"
@@ -498,7 +516,7 @@ mod tests {
             stroke: 0.03,
             ..limits()
         };
-        let found = chosen(&gained, &short, 60).unwrap();
+        let found = chosen(&gained, &short, 9).unwrap();
         assert!(found.extremes.stroke <= 0.03, "{:?}", found.extremes);
         assert!(found.programme.surface().is_some());
         let open = Limits {
@@ -507,7 +525,7 @@ mod tests {
             set_pressure: [2e5, 3e5],
             ..short
         };
-        let error = chosen(&gained, &open, 10).unwrap_err().to_string();
+        let error = chosen(&gained, &open, 2).unwrap_err().to_string();
         assert!(error.contains("`stroke_m` = 0.0300 m"), "{error}");
     }
 

@@ -76,7 +76,7 @@ impl Search<'_> {
         let starts = effects[index].starts(&self.clues(other, &[], &[]));
         let fitted: Vec<Hypothesis> = (starts.par_iter())
             .map(|start| self.free_at(effects, other, (index, start)))
-            .filter(|free| reach.is_infinite() || self.is_near(effects, free, reach))
+            .filter(|free| self.is_near(effects, free, reach))
             .map(|[tolerated, own]| {
                 let from = (&self.nominal, None);
                 self.fitted(

@@ -94,9 +94,10 @@ impl Search<'_> {
             known.any(|h| h.unlisted().is_none() && h.names() == names)
         };
         let all = exchanges(self, best);
+        let reach = self.rough_score(best) + BEHIND;
         (all.iter().filter(|effects| !is_known(effects)))
             .take_while(|_| !self.is_spent())
-            .filter_map(|effects| self.at_each_start(effects, best, f64::INFINITY))
+            .filter_map(|effects| self.at_each_start(effects, best, reach))
             .collect()
     }
 
