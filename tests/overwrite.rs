@@ -18,18 +18,21 @@ fn folder() -> Bench {
             .replace("../../models/device.toml", "device.toml");
         bench.write(&format!("{name}.toml"), text);
     }
-    for name in [
-        "rig.toml",
-        "stairs.csv",
-        "ride.csv",
-        "cycle.csv",
-        "predict.csv",
-    ] {
-        copy(
-            &format!("assets/proof/cases/case-03/{name}"),
-            &format!("cases/case-03/{name}"),
-        );
+    copy(
+        "assets/proof/cases/case-03/rig.toml",
+        "cases/case-03/rig.toml",
+    );
+    // Two seconds of each recording: what they are diagnosed as is not asked for here.
+    for name in ["stairs.csv", "ride.csv", "cycle.csv"] {
+        let file = project(&format!("assets/proof/cases/case-03/{name}"));
+        let text = std::fs::read_to_string(file).unwrap();
+        let start: Vec<&str> = text.lines().take(401).collect();
+        bench.write(&format!("cases/case-03/{name}"), start.join("\n") + "\n");
     }
+    copy(
+        "assets/proof/cases/case-03/predict.csv",
+        "cases/case-03/predict.csv",
+    );
     for name in ["case-03.json", "case-03.predict.csv"] {
         copy(
             &format!("assets/proof/sealed/{name}"),
@@ -53,7 +56,10 @@ const COMMANDS: [(&str, &str); 10] = [
         "out",
     ),
     ("import map.toml ride.csv --quiet", "out/ride.parquet"),
-    ("diagnose cases/case-03 --quiet", "out/diagnosis.json"),
+    (
+        "diagnose cases/case-03 --quiet --effort 1",
+        "out/diagnosis.json",
+    ),
     ("prove --cases cases --json", "out/case-03/diagnosis.json"),
     (
         "prove --sweep --effects force_sensor_gain_error --sizes 1 --seeds 1 --empty 0 --duration-s 2 --quiet",

@@ -5,6 +5,8 @@
 Prints each figure beside its bound; ends with 1 where one is missed.
 """
 
+import csv
+import json
 import math
 import subprocess
 import sys
@@ -235,8 +237,32 @@ def check_tuned(version):
     assert np.max(np.abs(plain["contact_force_n"] - run["contact_force_n"])) > 10.0
 
 
+def check_rig():
+    """A unit as the rig of `idc investigate`, by assets/rigs/co_simulation_unit.py: what it records is what the unit's file predicts, but for the noise of the sensors, and not what another does."""
+    case = PROJECT / "assets/proof/cases/case-03"
+    nominal = case / "rig.toml"
+    found, file = FOLDER / "rig.toml", FOLDER / "rig.fmu"
+    found.write_text(nominal.read_text() + FOUND)
+    idc("export", "fmu", found, "--library", LIBRARY, "--out", file)
+    asked, recorded = FOLDER / "asked.csv", FOLDER / "recorded.csv"
+    with open(case / "ride.csv", newline="") as ride, open(asked, "w", newline="") as rows:
+        csv.writer(rows).writerows(row[:4] for row in csv.reader(ride))
+    program = PROJECT / "assets/rigs/co_simulation_unit.py"
+    subprocess.run([sys.executable, program, file, nominal, asked, recorded], check=True)
+
+    def off(rig):
+        arguments = [PROGRAM, "predict", rig, recorded, "--out", FOLDER / "predicted", "--json", "--force"]
+        report = subprocess.run(arguments, check=True, capture_output=True, text=True).stdout
+        return json.loads(report)["rms_in_standard_deviations_of_noise"]
+
+    for column, rms in off(found).items():
+        within(f"rig, {column}: standard deviations of noise but for 1", abs(rms - 1.0), 0.1)
+    within("rig, nominal file: columns that it predicts", sum(rms < 1.5 for rms in off(nominal).values()), 0)
+
+
 def main():
     FOLDER.mkdir(parents=True, exist_ok=True)
+    check_rig()
     for version in ["2", "3"]:
         check_benches(version)
         check_state(version)

@@ -214,10 +214,8 @@ fn usual_places() -> Vec<PathBuf> {
     let program = this_program().unwrap_or_default();
     let folder = program.parent().unwrap_or(Path::new("")).to_owned();
     let above = folder.parent().unwrap_or(Path::new(""));
-    let examples = folder.join("examples");
-    [folder, examples, above.join("lib")]
-        .map(|place| place.join(LIBRARY))
-        .to_vec()
+    let places = [folder.clone(), folder.join("examples"), above.join("lib")];
+    places.map(|place| place.join(LIBRARY)).to_vec()
 }
 
 /// What was written.
