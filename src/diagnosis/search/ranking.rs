@@ -159,7 +159,7 @@ mod tests {
         };
         let delay: &[&str] = &["transport_delay"];
         let both: &[&str] = &["transport_delay", "exhaust_restriction"];
-        let lag: &[&str] = &["regulator_lag"];
+        let lag: &[&str] = &["regulator_second_order"];
         assert_eq!(first(&[delay, both], &[100.0, 50.0]), 0);
         assert_eq!(first(&[delay, both, lag], &[100.0, 50.0, 80.0]), 2);
         assert_eq!(first(&[delay, both, lag], &[100.0, 50.0, 95.0]), 0);
