@@ -590,14 +590,14 @@ fn what_cannot_be_a_unit_is_refused_and_nothing_is_written() {
             "",
             "",
             "other.so",
-            vec!["other.so", "cargo rustc", "cdylib"],
+            vec!["other.so", "cargo build", "co_simulation_unit"],
         ),
         (
             "scenario.toml",
             "",
             "",
             "absent.so",
-            vec!["absent.so", "cargo rustc", "cdylib"],
+            vec!["absent.so", "cargo build", "co_simulation_unit"],
         ),
     ] {
         let bench = with(file, from, to);
