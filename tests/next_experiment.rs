@@ -191,6 +191,8 @@ fn a_rig_that_is_a_program_is_asked_until_it_is_settled() {
         "./rig.sh",
         "--programmes",
         "60",
+        "--time",
+        "5s",
         "--out",
         "asked",
         "--json",
