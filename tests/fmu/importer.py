@@ -238,7 +238,7 @@ def check_tuned(version):
 
 
 def check_rig():
-    """A unit as the rig of `idc investigate`, by assets/rigs/co_simulation_unit.py: what it records is what the unit's file predicts, but for the noise of the sensors, and not what another does."""
+    """A unit as the rig of `idc investigate`, by assets/rig_programs/co_simulation_unit.py: what it records is what the unit's file predicts, but for the noise of the sensors, and not what another does."""
     case = PROJECT / "assets/proof/cases/case-03"
     nominal = case / "rig.toml"
     found, file = FOLDER / "rig.toml", FOLDER / "rig.fmu"
@@ -247,7 +247,7 @@ def check_rig():
     asked, recorded = FOLDER / "asked.csv", FOLDER / "recorded.csv"
     with open(case / "ride.csv", newline="") as ride, open(asked, "w", newline="") as rows:
         csv.writer(rows).writerows(row[:4] for row in csv.reader(ride))
-    program = PROJECT / "assets/rigs/co_simulation_unit.py"
+    program = PROJECT / "assets/rig_programs/co_simulation_unit.py"
     subprocess.run([sys.executable, program, file, nominal, asked, recorded], check=True)
 
     def off(rig):
