@@ -257,7 +257,8 @@ def check_rig():
 
     for column, rms in off(found).items():
         within(f"rig, {column}: standard deviations of noise but for 1", abs(rms - 1.0), 0.1)
-    within("rig, nominal file: columns that it predicts", sum(rms < 1.5 for rms in off(nominal).values()), 0)
+    # Friction and a leak leave the regulator alone.
+    within("rig, nominal file: columns that it predicts but for the regulator's", sum(rms < 1.5 for rms in off(nominal).values()) - 1, 0)
 
 
 def main():
