@@ -323,15 +323,15 @@ pub(in super::super) fn investigate(
         odds.push(Odds::of(&open, diagnosis.none_of_these()));
         let is_sure = open[0].probability >= arguments.until;
         let is_nothing = diagnosis.best().finds_nothing();
-        let spent = asked.len() == arguments.runs as usize;
-        match (is_sure, is_nothing, spent) {
+        match (is_sure, is_nothing, asked.len() == arguments.runs as usize) {
             (true, true, _) => break (Stop::NothingMissing, found),
             (true, false, _) => break (Stop::Settled, found),
             (false, _, true) => break (Stop::Runs, found),
             (false, _, false) => (),
         }
         let number = growth.next_number();
-        let next = match ask(arguments, (&case, &found), (&program, &out, number), silent)? {
+        let next = ask(arguments, (&case, &found), (&program, &out, number), silent);
+        let next = match next.or_else(|error| none_allowed(error, asked.len()))? {
             Next::Recorded(next) => next,
             Next::Nothing(left_open) => break (Stop::NoExperiment(left_open), found),
         };
@@ -448,6 +448,18 @@ fn ask(
         }
     }
     Err(program.refused(refusals, said).into())
+}
+
+/// Nothing that is allowed, where limits that allowed a recording before allow none under what is open since; otherwise the error.
+fn none_allowed(error: AppError, recorded: usize) -> Result<Next, AppError> {
+    match error {
+        AppError::Next(NextError::Limits(limit)) if recorded > 0 => {
+            Ok(Next::Nothing(vec![format!(
+                "By what is open now, {limit}."
+            )]))
+        }
+        error => Err(error),
+    }
 }
 
 fn record(stop: &Stop, odds: &[Odds], asked: &[Asked], seconds: f64, found: &Diagnosed) -> Value {
@@ -602,6 +614,25 @@ fn tree(odds: &[Odds], asked: &[Asked], names: &[&str]) -> Panel<'static> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// After two recordings an explanation was open by which every programme pressed too hard: that ended an investigation with an error, its recordings without a record.
+    #[test]
+    fn limits_that_allow_nothing_more_end_what_has_begun() {
+        let limit = || LimitError::Force {
+            most: 3.6,
+            least: 65.0,
+        };
+        let error = |limit| AppError::Next(NextError::Limits(limit));
+        assert!(none_allowed(error(limit()), 0).is_err());
+        let Ok(Next::Nothing(reasons)) = none_allowed(error(limit()), 2) else {
+            panic!("it is an error");
+        };
+        assert!(reasons[0].contains("`force_n` = 3.600 N"), "{reasons:?}");
+        let other = NextError::NoBench {
+            case: String::new(),
+        };
+        assert!(none_allowed(other.into(), 2).is_err());
+    }
 
     /// The folder of an investigation is a case: one that is gone on from wrote its first recording over that of the other.
     #[test]
