@@ -4,13 +4,15 @@ use std::path::Path;
 use std::process::Command;
 
 use idc_cell::diagnosis::answer::{Answer, Extent};
-use idc_cell::laboratory::{Conditions, EFFECTS, Known, LOST, Recipe, SealedCase, write_case};
+use idc_cell::laboratory::{
+    Conditions, EFFECTS, Known, LOST, LaboratoryCase, Recipe, SealedCase, write_case,
+};
 
 use crate::statements::hold_together;
 
-/// Makes a case, diagnoses it by the program, and returns the answer with what was concealed.
-fn diagnosed(name: &str, seed: u64, effects: &[(&'static str, f64)]) -> (Answer, SealedCase) {
-    let case = Recipe {
+/// A case with some effects concealed, by their sizes.
+fn made(name: &str, seed: u64, effects: &[(&'static str, f64)]) -> LaboratoryCase {
+    Recipe {
         name: name.to_owned(),
         seed,
         effects: effects.to_vec(),
@@ -19,7 +21,12 @@ fn diagnosed(name: &str, seed: u64, effects: &[(&'static str, f64)]) -> (Answer,
         conditions: Conditions::default(),
     }
     .make()
-    .unwrap();
+    .unwrap()
+}
+
+/// Makes a case, diagnoses it by the program, and returns the answer with what was concealed.
+fn diagnosed(name: &str, seed: u64, effects: &[(&'static str, f64)]) -> (Answer, SealedCase) {
+    let case = made(name, seed, effects);
     let room = tempfile::tempdir().unwrap();
     let place = |part: &str| room.path().join(part);
     write_case(&case, &place("case"), None).unwrap();
@@ -67,7 +74,7 @@ fn the_smallest_effect_that_shows_is_that() {
         ("tool_runout", "amplitude_m"),
     ] {
         let of_size = |size: f64| diagnosed(effect, 78, &[(effect, size)]);
-        let (_, sealed) = of_size(0.1);
+        let sealed = made(effect, 78, &[(effect, 0.1)]).sealed;
         let size = 0.1 * reported(effect, name) / planted(&sealed, name);
         let (twice, sealed) = of_size(2.0 * size);
         println!(
@@ -84,16 +91,7 @@ fn the_smallest_effect_that_shows_is_that() {
 /// Rigs without an accelerometer: the rig file does not name it, the recordings lack its column or have one that counts nothing.
 #[test]
 fn a_device_without_an_accelerometer_is_diagnosed_by_its_other_sensors() {
-    let case = Recipe {
-        name: "no_accelerometer".to_owned(),
-        seed: 31,
-        effects: vec![("coulomb_viscous_friction", 1.0)],
-        law: None,
-        duration: 5.0,
-        conditions: Conditions::default(),
-    }
-    .make()
-    .unwrap();
+    let case = made("no_accelerometer", 31, &[("coulomb_viscous_friction", 1.0)]);
     for keeps_column in [false, true] {
         let room = tempfile::tempdir().unwrap();
         let place = |part: &str| room.path().join(part);

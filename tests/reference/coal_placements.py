@@ -2,7 +2,8 @@
 
     coal_placements.py PLACEMENTS.json RESULT.json
 
-Each pair's least signed distance over the knots of the motion [m], negative for the depth; a bound where spheres are farther apart than 20 mm. Convex solids are
+Each pair's least signed distance over the knots of the motion [m], negative for the depth, of one that is deeper than 2 mm the first such; a bound where spheres are farther apart than 20 mm.
+Convex solids are
 coal.Convex on the vertices as given, surfaces a triangle mesh in an OBBRSS tree.
 """
 import json
@@ -12,6 +13,7 @@ import coal
 import numpy as np
 
 NEAR = 0.02
+DEEP = -0.002
 
 
 def rotation(x, y, z, w):
@@ -64,12 +66,16 @@ def least(one, two):
     for shape_one, middle_one, radius_one in one.solids:
         for shape_two, middle_two, radius_two in two.solids:
             gaps = np.linalg.norm(middle_one - middle_two, axis=1) - radius_one - radius_two
-            for knot in np.flatnonzero(gaps < NEAR):
+            for knot in np.argsort(gaps):
+                # Solids are no nearer than the spheres about them.
+                if gaps[knot] >= min(best, NEAR):
+                    best = min(best, gaps[knot])
+                    break
                 result.clear()
                 distance = coal.distance(shape_one, one.at(knot), shape_two, two.at(knot), request, result)
                 best = min(best, distance)
-            far = gaps[gaps >= NEAR]
-            best = min(best, far.min() if far.size else np.inf)
+                if best < DEEP:
+                    return best
     return best
 
 
