@@ -18,8 +18,13 @@ use crate::common::{project, skipped};
 
 /// Nearer to touching than this a placement may be judged either way [m].
 const TOUCHING: f64 = 1e-3;
-/// Placements of each robot.
-const PLACEMENTS: usize = 67;
+/// Placements of each robot: some in the ordinary tests, more with `IDC_ALL_PLACEMENTS=1`, two minutes on a processor.
+fn count_of_placements() -> usize {
+    match std::env::var_os("IDC_ALL_PLACEMENTS") {
+        Some(_) => 67,
+        None => 20,
+    }
+}
 
 fn pose(pose: DPose3) -> Value {
     json!({ "position": pose.translation.to_array(), "quaternion": pose.rotation.to_array() })
@@ -95,7 +100,7 @@ fn document(cell: &Cell, random: &mut ChaCha8Rng) -> (Value, Vec<Vec<bool>>) {
         .map(described)
         .collect();
     let (mut placements, mut verdicts) = (Vec::new(), Vec::new());
-    for _ in 0..PLACEMENTS {
+    for _ in 0..count_of_placements() {
         let model = Setup::load(placed(&cell.setup.scenario, random))
             .unwrap()
             .collision;
@@ -139,7 +144,7 @@ fn meetings_along_a_motion_are_those_that_coal_finds() {
         documents.push(document);
         verdicts.extend(own);
     }
-    assert_eq!(verdicts.len(), 3 * PLACEMENTS);
+    assert_eq!(verdicts.len(), 3 * count_of_placements());
     let folder = tempfile::tempdir().unwrap();
     let [asked, reported] = ["asked.json", "answered.json"].map(|name| folder.path().join(name));
     std::fs::write(&asked, serde_json::to_string(&documents).unwrap()).unwrap();
@@ -171,5 +176,6 @@ fn meetings_along_a_motion_are_those_that_coal_finds() {
         "{meeting} of {} placements meet; {pairs} pairs, {near} of them within 1 mm of touching",
         verdicts.len()
     );
-    assert!((40..=160).contains(&meeting), "{meeting} of 201 meet");
+    let share = meeting as f64 / verdicts.len() as f64;
+    assert!((0.2..0.8).contains(&share), "{meeting} meet");
 }
