@@ -71,4 +71,6 @@ def main(unit, rig, asked, out):
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:5])
+    if len(sys.argv) != 5:
+        sys.exit(f"{len(sys.argv) - 1} arguments, expected co_simulation_unit.py UNIT.fmu RIG.toml IN.csv OUT.csv")
+    main(*sys.argv[1:])
