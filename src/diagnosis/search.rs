@@ -203,6 +203,7 @@ impl Search<'_> {
         weighed.simplify_beside_term(&mut full, scale, observer);
         weighed.add_nominal(&mut full, observer);
         weighed.drop_below_noise(&mut full, scale, observer);
+        weighed.add_one_for_two(&mut full, observer);
         weighed.add_close(&mut full, &all, scale, observer);
         weighed.add_beyond(&mut full, (unexplained, &all), observer);
         let roughly = self.tried_roughly(&full, &all, (unexplained, noise));

@@ -121,8 +121,8 @@ impl Diagnosis {
         self.left_beyond_noise() + self.idealised_beside(gain)
     }
 
-    /// Odds of another explanation against the best that what is left may come to [1], L / (R + L): none of one that has effects of the best alone, or laws in their
-    /// places that are of their kind.
+    /// Odds of another explanation against the best that what is left may come to [1], L / (R + L), times what each effect that it has more costs beforehand: none of one
+    /// that has effects of the best alone, or laws in their places that are of their kind.
     pub(in crate::diagnosis) fn odds_by_what_is_left(&self, other: &Hypothesis) -> f64 {
         let lacks = |own: &&&Effect| !other.effects.iter().any(|e| e.excludes(own));
         let replaced: Vec<&str> = (self.best().effects.iter().filter(lacks))
@@ -133,8 +133,13 @@ impl Diagnosis {
         }
         let left = self.left_of_laws();
         let gain = (other.fit.cost() - self.best().fit.cost()).max(0.0);
+        let more = other
+            .effects
+            .len()
+            .saturating_sub(self.best().effects.len());
+        let beforehand = (-0.5 * self.settings.look_elsewhere * more as f64).exp();
         match left > 0.0 {
-            true => left / (gain + left),
+            true => beforehand * left / (gain + left),
             false => 0.0,
         }
     }

@@ -42,6 +42,13 @@ impl Hypothesis {
         names
     }
 
+    /// Whether these effects are all that it takes.
+    pub(in crate::diagnosis) fn is_of(&self, effects: &[&'static Effect]) -> bool {
+        let mut names: Vec<&str> = effects.iter().map(|effect| effect.name).collect();
+        names.sort_unstable();
+        self.unlisted().is_none() && self.names() == names
+    }
+
     /// Names of the effects as people read them, the model discrepancy last.
     pub fn effect_display_names(&self) -> Vec<String> {
         let effects = self.effects.iter();

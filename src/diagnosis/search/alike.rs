@@ -1,5 +1,6 @@
-//! Laws that are alike, from each of their starts, where the best explanation leaves more than noise: of friction that sticks a fit from one start comes to rest where
-//! its dry part stands in for the breakaway force, and a formula would be found for the rest.
+//! Laws that are alike, from each of their starts: where the best explanation leaves more than noise, for of friction that sticks a fit from one start comes to rest where
+//! its dry part stands in for the breakaway force, and a formula would be found for the rest; and in the place of two, for a search that goes effect by effect comes to
+//! two orifices where the discharge coefficient of both is off.
 
 use rayon::prelude::*;
 
@@ -9,6 +10,7 @@ use super::rivals::BEHIND;
 use super::ruled_out::exchanges;
 use super::scale::Scale;
 use super::{Search, same};
+use crate::diagnosis::answer::family::is_alike;
 use crate::diagnosis::fit::free::{Free, free_of};
 use crate::diagnosis::fit::hypothesis::Hypothesis;
 use crate::diagnosis::fit::{FULL, Limit, ROUGH};
@@ -56,6 +58,59 @@ impl Search<'_> {
         if full[0].names() != best.names() {
             self.eliminate(full, observer);
         }
+    }
+
+    /// Adds what has one law in the place of two of the best explanation's, of the kind of either, as long as that scores better.
+    pub(super) fn add_one_for_two(&self, full: &mut Vec<Hypothesis>, observer: &mut Observer<'_>) {
+        while let Some(best) = full
+            .first()
+            .filter(|best| best.unlisted().is_none())
+            .cloned()
+        {
+            let reach = self.rough_score(&best) + BEHIND;
+            for effects in self.one_for_two(&best) {
+                let is_known = full.iter().any(|h| h.is_of(&effects));
+                if is_known || self.is_spent() {
+                    continue;
+                }
+                if let Some(fitted) = self.at_each_start(&effects, &best, reach) {
+                    let detail = format!("one for two {:.1}", self.score(&fitted));
+                    observer(&Step::Variation.of(&fitted, detail));
+                    full.push(fitted);
+                }
+            }
+            full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+            if full[0].effects.len() >= best.effects.len() {
+                return;
+            }
+        }
+    }
+
+    /// The effects of an explanation with one law in the place of two, which is like one of them and goes with the rest.
+    fn one_for_two(&self, best: &Hypothesis) -> Vec<Vec<&'static Effect>> {
+        let mut sets: Vec<Vec<&'static Effect>> = Vec::new();
+        for last in self.shown.len()..best.effects.len() {
+            for first in self.shown.len()..last {
+                let pair = [best.effects[first], best.effects[last]];
+                let mut rest = best.effects.clone();
+                rest.remove(last);
+                rest.remove(first);
+                let stands_in = |own: &&&'static Effect| {
+                    let is_like = |one: &&'static Effect| is_alike(own, one);
+                    let is_new = |one: &&'static Effect| one.name != own.name;
+                    let goes_with = |one: &&'static Effect| !own.excludes(one);
+                    pair.iter().any(is_like)
+                        && best.effects.iter().all(is_new)
+                        && rest.iter().all(goes_with)
+                };
+                for own in self.candidates.iter().filter(stands_in) {
+                    let mut effects = rest.clone();
+                    effects.insert(first, own);
+                    sets.push(effects);
+                }
+            }
+        }
+        sets
     }
 
     /// The best of the full fits from each start of the law that is not the other's from where a rough fit scores less than `reach`; none of one that has no such start.
@@ -148,7 +203,7 @@ mod tests {
     use crate::diagnosis::fit::FULL;
     use crate::diagnosis::fit::hypothesis::Hypothesis;
     use crate::diagnosis::test_evidence::{evidence_of, plant, search};
-    use crate::effects::{CATALOGUE, Effect};
+    use crate::effects::{CATALOGUE, Effect, NUMBERS_OFF};
 
     fn effect(name: &str) -> &'static Effect {
         CATALOGUE.iter().find(|own| own.name == name).unwrap()
@@ -172,6 +227,45 @@ mod tests {
         assert!(fitted(f64::INFINITY).is_some(), "{other}");
         let own = fitted(search.rough_score(&best) + BEHIND);
         own.map(|alike| search.score(&alike) - search.score(&best))
+    }
+
+    /// Where the discharge coefficient was off, both orifices were stated at 99 %: beside either alone something is left, and what each of them does not
+    /// explain no look at the coefficient saw.
+    #[test]
+    fn one_law_stands_in_the_place_of_two_where_it_does_what_both_do() {
+        let mut truth = plant();
+        truth.device.supply_orifice *= 0.9;
+        truth.device.exhaust_orifice *= 0.9;
+        let evidence = evidence_of(&truth, vec![vec![1.5e5; 126], vec![2.5e5; 126]]);
+        let mut search = search(&evidence);
+        search.candidates = CATALOGUE.iter().chain(&NUMBERS_OFF).collect();
+        let two = vec![effect("supply_restriction"), effect("exhaust_restriction")];
+        let mut found = vec![Hypothesis {
+            fit: variant(&search, &two, FULL).unwrap(),
+            effects: two,
+            depends_on: Vec::new(),
+        }];
+        search.add_one_for_two(&mut found, &mut |_| ());
+        assert_eq!(
+            found[0].names(),
+            ["number_off (valve.discharge_coefficient)"]
+        );
+        let off = found[0].fit.values[0] / plant().device.discharge_coefficient;
+        assert!((off - 0.9).abs() < 0.01, "{off}");
+        // Of two that one law does not do none takes the place.
+        let mut other = plant();
+        other.device.supply_orifice *= 0.9;
+        other.device.exhaust_orifice *= 1.1;
+        let evidence = evidence_of(&other, vec![vec![1.5e5; 126], vec![2.5e5; 126]]);
+        search.evidence = &evidence;
+        let two = vec![effect("supply_restriction"), effect("exhaust_restriction")];
+        let mut found = vec![Hypothesis {
+            fit: variant(&search, &two, FULL).unwrap(),
+            effects: two,
+            depends_on: Vec::new(),
+        }];
+        search.add_one_for_two(&mut found, &mut |_| ());
+        assert_eq!(found[0].effects.len(), 2);
     }
 
     /// Full fits of laws that were far off took four fifths of a diagnosis that they could not change: a late regulator does nothing of what a large dead volume does. A law that

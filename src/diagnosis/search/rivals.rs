@@ -87,12 +87,8 @@ impl Search<'_> {
         if best.unlisted().is_some() {
             return Vec::new();
         }
-        let is_known = |effects: &[&'static Effect]| {
-            let mut names: Vec<&str> = effects.iter().map(|effect| effect.name).collect();
-            names.sort_unstable();
-            let mut known = found.iter().chain(more);
-            known.any(|h| h.unlisted().is_none() && h.names() == names)
-        };
+        let is_known =
+            |effects: &[&'static Effect]| found.iter().chain(more).any(|h| h.is_of(effects));
         let all = exchanges(self, best);
         let reach = self.rough_score(best) + BEHIND;
         (all.iter().filter(|effects| !is_known(effects)))
