@@ -22,6 +22,14 @@ pub(super) struct PistonRates {
     swiftness: f64,
 }
 
+impl DeviceParameters {
+    /// The fastest rate of the piston's swing on seals, end stops and cushions [1/s]: a simulation takes as many more sub-steps there.
+    #[must_use]
+    pub fn fastest_rate(&self) -> f64 {
+        PistonRates::new(self).fastest()
+    }
+}
+
 impl PistonRates {
     pub(super) fn new(parameters: &DeviceParameters) -> Self {
         let mass = parameters.moving_mass;
@@ -40,6 +48,11 @@ impl PistonRates {
             full_stroke: parameters.full_stroke,
             swiftness: parameters.regulator.supply * parameters.areas().extending / mass,
         }
+    }
+
+    /// The fastest rate of what is in the device itself [1/s].
+    fn fastest(&self) -> f64 {
+        self.everywhere.max(self.stop).max(self.cushion)
     }
 
     /// The fastest rate that the piston can meet over a step [1/s]: stops, cushions and load count if they are within its reach, for they

@@ -170,6 +170,8 @@ struct Choice<'a> {
     of: (&'a [Open], &'a Sensors, &'a Limits),
     /// Draws of the numbers of every explanation.
     plants: Vec<Vec<PlantParameters>>,
+    /// Work of simulating each explanation and all of its draws, as so many devices without any [1].
+    work: Vec<[f64; 2]>,
     is_open: bool,
     /// Weight of a number's information [1].
     weight: f64,
@@ -180,7 +182,7 @@ struct Choice<'a> {
     /// Least of each over the programmes.
     least: Extremes,
     most_on_numbers: f64,
-    /// Time of devices that was simulated [s].
+    /// Time of devices that was simulated [s]; of a stiffer one that of as many more.
     simulated: f64,
 }
 
@@ -192,14 +194,20 @@ impl<'a> Choice<'a> {
         preparation: f64,
         random: &mut ChaCha8Rng,
     ) -> Self {
-        let (open, ..) = of;
+        let (open, sensors, _) = of;
+        let plants: Vec<Vec<PlantParameters>> = open.iter().map(|own| draws(own, random)).collect();
+        let usual = sensors.without.device.fastest_rate();
+        let work = |plant: &PlantParameters| (plant.device.fastest_rate() / usual).max(1.0);
         let beyond = coverage.probability_beyond();
         let is_open = [shares_of(open), vec![beyond, 1.0 - beyond]]
             .iter()
             .any(|odds| entropy(odds) > OPEN);
         Self {
             of,
-            plants: open.iter().map(|own| draws(own, random)).collect(),
+            work: (open.iter().zip(&plants))
+                .map(|(own, draws)| [work(&own.plant), draws.iter().map(work).sum()])
+                .collect(),
+            plants,
             is_open,
             weight: if is_open { BESIDE } else { 1.0 },
             preparation,
@@ -216,8 +224,8 @@ impl<'a> Choice<'a> {
     }
 
     /// Counts what was simulated; a short programme is work as well.
-    fn count(&mut self, duration: f64, devices: usize) {
-        self.simulated += duration.max(SHORT) * devices as f64;
+    fn count(&mut self, duration: f64, devices: f64) {
+        self.simulated += duration.max(SHORT) * devices;
     }
 
     /// Keeps a programme whose information is at least so much [nat], and more than that of others; gives the force on the part where only that forbids it [N].
@@ -228,7 +236,8 @@ impl<'a> Choice<'a> {
         let duration = programme.duration();
         let time = duration + self.preparation;
         // Each explanation with what tells whether it can be predicted, and the rig without them.
-        self.count(duration, 2 * open.len() + 1);
+        let explanations: f64 = self.work.iter().map(|[own, _]| own).sum();
+        self.count(duration, 2.0 * explanations + 1.0);
         let full = self.kept.len() == KEPT;
         // Derivatives are most of the work: of what could not be among the best they are not asked for.
         let beyond = self.coverage.information(outlook.likeliest());
@@ -241,7 +250,8 @@ impl<'a> Choice<'a> {
             return None;
         }
         let expected = outlook.expected();
-        let derivatives: usize = open.iter().map(|own| own.free.len()).sum();
+        let of_one = |(own, [work, _]): (&Open, &[f64; 2])| work * own.free.len() as f64;
+        let derivatives: f64 = open.iter().zip(&self.work).map(of_one).sum();
         self.count(duration, derivatives);
         self.most_on_numbers = expected.how_much.max(self.most_on_numbers);
         let gained = expected.which + beyond + self.weight * expected.how_much;
@@ -254,7 +264,7 @@ impl<'a> Choice<'a> {
         }
         // Of a programme that would be kept, whether it may be done.
         let extremes = extremes_of(&self.plants, &inputs, limits.arm.as_ref());
-        let draws: usize = self.plants.iter().map(Vec::len).sum();
+        let draws: f64 = self.work.iter().map(|[_, draws]| draws).sum();
         self.count(duration, draws);
         self.least = self.least.combined(extremes, f64::min);
         if extremes.stroke > limits.stroke || extremes.torque_share > 1.0 {

@@ -9,8 +9,8 @@ use crate::diagnosis::search::ranking::Ranked;
 use crate::effects::UNLISTED;
 use crate::plant::CHANNELS;
 
-/// Odds against the best below which an explanation is settled not to be the one [1].
-const LEAST: f64 = 1e-3;
+/// Odds against the best below which an explanation is settled not to be the one [1]: as improbable as that none of them is.
+const LEAST: f64 = NONE_OF_THESE;
 /// Explanations at most: others behind them are less likely than all of these.
 const MOST: usize = 6;
 /// Standard deviations of its sum of squares that noise alone may leave [1].
