@@ -315,6 +315,8 @@ fn a_rig_that_does_otherwise_is_refused_with_what_it_did() {
             "./rig.sh",
             "--programmes",
             "3",
+            "--until",
+            "0.999",
             "--patience",
             patience,
             "--out",

@@ -121,82 +121,11 @@ impl Subject for Device {
     fn readings(simulated: &PlantTrajectory) -> &[Vec<f64>] {
         &simulated.readings
     }
-
-    /// Force and acceleration jump where the tool touches, by the contact's damping and the speed: where the tool touches in one of both and not in the other, a touch that
-    /// a neighbouring sample of the simulation has at the latest is met within a sample, and the nearest of these readings is compared with.
-    fn compared(
-        (channel, sample): (usize, usize),
-        [measured, simulated]: [&[Vec<f64>]; 2],
-        noise: &[f64],
-    ) -> f64 {
-        let own = simulated[channel][sample];
-        let force = Channel::Force as usize;
-        let touches = |force_reading: f64| force_reading.abs() > TOUCHES * noise[force];
-        let is_there = measured[force][sample];
-        let jumps = channel == force || channel == Channel::Acceleration as usize;
-        if !jumps || !is_there.is_finite() || touches(is_there) == touches(simulated[force][sample])
-        {
-            return own;
-        }
-        let near = [sample.checked_sub(1), Some(sample + 1)]
-            .into_iter()
-            .flatten();
-        let alike = |other: &usize| {
-            let reading = simulated[force].get(*other);
-            reading.is_some_and(|reading| touches(*reading) == touches(is_there))
-        };
-        let reading = measured[channel][sample];
-        near.filter(alike)
-            .map(|other| simulated[channel][other])
-            .fold(own, |best, other| {
-                match (other - reading).abs() < (best - reading).abs() {
-                    true => other,
-                    false => best,
-                }
-            })
-    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::diagnosis::test_evidence::{evidence_of, plant};
-
-    /// In a cell that another engine simulated the tool touched a moment after a sample, and by the model a moment before: the damper's 68 N stood in one reading, 85 times
-    /// the noise, and for it a leak was stated that is not there.
-    #[test]
-    fn a_touch_within_a_sample_is_no_reading_far_off() {
-        let still = vec![0.0; 6];
-        let noise = [400.0, 4e-5, 0.8, 0.25];
-        let measured = [
-            still.clone(),
-            still.clone(),
-            vec![0.0, 0.3, 0.4, 116.6, 150.4, 167.8],
-            vec![8.0, 8.1, 7.9, -36.0, -50.0, -56.0],
-        ];
-        let early = [
-            still.clone(),
-            still.clone(),
-            vec![0.0, 0.0, 68.3, 117.0, 150.5, 167.1],
-            vec![8.0, 8.0, -18.0, -36.5, -49.0, -56.0],
-        ];
-        let compared = |channel: Channel, sample, simulated: &[Vec<f64>]| {
-            Device::compared((channel as usize, sample), [&measured, simulated], &noise)
-        };
-        assert_eq!(compared(Channel::Force, 2, &early), 0.0);
-        assert_eq!(compared(Channel::Acceleration, 2, &early), 8.0);
-        // Where both touch, or neither, the sample's own.
-        assert_eq!(compared(Channel::Force, 3, &early), 117.0);
-        assert_eq!(compared(Channel::Force, 1, &early), 0.0);
-        // Two samples early is early.
-        let earlier = [
-            still.clone(),
-            still,
-            vec![60.0, 68.3, 117.0, 150.5, 167.1, 168.0],
-            vec![0.0; 6],
-        ];
-        assert_eq!(compared(Channel::Force, 1, &earlier), 68.3);
-    }
 
     /// A trajectory that was simulated for a load cell in time does not say what a late one feels between the samples.
     #[test]

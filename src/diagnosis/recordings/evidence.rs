@@ -143,17 +143,17 @@ impl<S: Subject> Evidence<S> {
     fn residuals(&self, trajectories: &[S::Simulated]) -> Vec<f64> {
         let mut all = Vec::new();
         for (measured, trajectory) in self.recordings.iter().zip(trajectories) {
-            let both = [measured.readings.as_ref(), S::readings(trajectory)];
-            for (channel, noise) in self.noise.as_ref().iter().enumerate() {
+            let channels = measured.readings.as_ref().iter();
+            let channels = channels
+                .zip(S::readings(trajectory))
+                .zip(self.noise.as_ref());
+            for ((measured, simulated), noise) in channels {
                 // A model that is no longer finite is as far off as can be: as a value that does not count it would be the best of all.
-                let residual = |(sample, (measured, simulated)): (usize, (&f64, &f64))| {
-                    if measured.is_finite() && !simulated.is_finite() {
-                        return f64::INFINITY;
-                    }
-                    (measured - S::compared((channel, sample), both, self.noise.as_ref())) / noise
+                let residual = |(measured, simulated): (&f64, &f64)| match simulated.is_finite() {
+                    false if measured.is_finite() => f64::INFINITY,
+                    _ => (measured - simulated) / noise,
                 };
-                let pairs = both[0][channel].iter().zip(&both[1][channel]);
-                all.extend(pairs.enumerate().map(residual));
+                all.extend(measured.iter().zip(simulated).map(residual));
             }
         }
         all

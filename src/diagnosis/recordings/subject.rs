@@ -89,15 +89,6 @@ pub trait Subject: Copy + Debug + Send + Sync + 'static {
 
     /// Readings in the order of the channels.
     fn readings(simulated: &Self::Simulated) -> &[Vec<f64>];
-
-    /// The simulated reading that a measured one is compared with, channel and sample by their places: that of its sample, unless the model jumps there.
-    fn compared(
-        (channel, sample): (usize, usize),
-        [_, simulated]: [&[Vec<f64>]; 2],
-        _noise: &[f64],
-    ) -> f64 {
-        simulated[channel][sample]
-    }
 }
 
 #[cfg(test)]
