@@ -62,25 +62,29 @@ impl Search<'_> {
 
     /// Adds what has one law in the place of two of the best explanation's, of the kind of either, as long as that scores better.
     pub(super) fn add_one_for_two(&self, full: &mut Vec<Hypothesis>, observer: &mut Observer<'_>) {
-        while let Some(best) = full
-            .first()
-            .filter(|best| best.unlisted().is_none())
-            .cloned()
-        {
-            let reach = self.rough_score(&best) + BEHIND;
+        loop {
+            let best = full.first().filter(|best| best.unlisted().is_none());
+            let Some(best) = best.cloned() else { return };
+            let (reach, score) = (self.rough_score(&best) + BEHIND, self.score(&best));
+            let mut fitted: Vec<Hypothesis> = Vec::new();
             for effects in self.one_for_two(&best) {
                 let is_known = full.iter().any(|h| h.is_of(&effects));
                 if is_known || self.is_spent() {
                     continue;
                 }
-                if let Some(fitted) = self.at_each_start(&effects, &best, reach) {
-                    let detail = format!("one for two {:.1}", self.score(&fitted));
-                    observer(&Step::Variation.of(&fitted, detail));
-                    full.push(fitted);
+                if let Some(one) = self.at_each_start(&effects, &best, reach) {
+                    let detail = format!("one for two {:.1}", self.score(&one));
+                    observer(&Step::Variation.of(&one, detail));
+                    fitted.push(one);
                 }
             }
-            full.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
-            if full[0].effects.len() >= best.effects.len() {
+            let least = fitted.iter().map(|one| self.score(one));
+            let leads = least.fold(f64::INFINITY, f64::min) < score;
+            full.extend(fitted);
+            // The search has weighed the first one with more than its score.
+            let first = if leads { 0 } else { 1 };
+            full[first..].sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+            if !leads {
                 return;
             }
         }
