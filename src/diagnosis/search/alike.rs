@@ -78,12 +78,11 @@ impl Search<'_> {
                     fitted.push(one);
                 }
             }
-            let least = fitted.iter().map(|one| self.score(one));
-            let leads = least.fold(f64::INFINITY, f64::min) < score;
-            full.extend(fitted);
+            fitted.sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+            let leads = fitted.first().is_some_and(|one| self.score(one) < score);
             // The search has weighed the first one with more than its score.
-            let first = if leads { 0 } else { 1 };
-            full[first..].sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
+            full.splice(usize::from(!leads)..usize::from(!leads), fitted);
+            full[1..].sort_by(|a, b| self.score(a).total_cmp(&self.score(b)));
             if !leads {
                 return;
             }
