@@ -98,7 +98,7 @@ impl Search<'_> {
                 let mut rest = best.effects.clone();
                 rest.remove(last);
                 rest.remove(first);
-                let stands_in = |own: &&&'static Effect| {
+                let may_replace = |own: &&&'static Effect| {
                     let is_like = |one: &&'static Effect| is_alike(own, one);
                     let is_new = |one: &&'static Effect| one.name != own.name;
                     let goes_with = |one: &&'static Effect| !own.excludes(one);
@@ -106,7 +106,7 @@ impl Search<'_> {
                         && best.effects.iter().all(is_new)
                         && rest.iter().all(goes_with)
                 };
-                for own in self.candidates.iter().filter(stands_in) {
+                for own in self.candidates.iter().filter(may_replace) {
                     let mut effects = rest.clone();
                     effects.insert(first, own);
                     sets.push(effects);
@@ -235,7 +235,7 @@ mod tests {
     /// Where the discharge coefficient was off, both orifices were stated at 99 %: beside either alone something is left, and what each of them does not
     /// explain no look at the coefficient saw.
     #[test]
-    fn one_law_stands_in_the_place_of_two_where_it_does_what_both_do() {
+    fn one_law_takes_the_place_of_two_where_it_does_what_both_do() {
         let mut truth = plant();
         truth.device.supply_orifice *= 0.9;
         truth.device.exhaust_orifice *= 0.9;
