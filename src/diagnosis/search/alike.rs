@@ -236,39 +236,29 @@ mod tests {
     /// explain no look at the coefficient saw.
     #[test]
     fn one_law_takes_the_place_of_two_where_it_does_what_both_do() {
-        let mut truth = plant();
-        truth.device.supply_orifice *= 0.9;
-        truth.device.exhaust_orifice *= 0.9;
-        let evidence = evidence_of(&truth, vec![vec![1.5e5; 126], vec![2.5e5; 126]]);
-        let mut search = search(&evidence);
-        search.candidates = CATALOGUE.iter().chain(&NUMBERS_OFF).collect();
-        let two = vec![effect("supply_restriction"), effect("exhaust_restriction")];
-        let mut found = vec![Hypothesis {
-            fit: variant(&search, &two, FULL).unwrap(),
-            effects: two,
-            depends_on: Vec::new(),
-        }];
-        search.add_one_for_two(&mut found, &mut |_| ());
-        assert_eq!(
-            found[0].names(),
-            ["number_off (valve.discharge_coefficient)"]
-        );
-        let off = found[0].fit.values[0] / plant().device.discharge_coefficient;
+        // The best explanation, of two orifices so many times as large.
+        let best = |[supply, exhaust]: [f64; 2]| {
+            let mut truth = plant();
+            truth.device.supply_orifice *= supply;
+            truth.device.exhaust_orifice *= exhaust;
+            let evidence = evidence_of(&truth, vec![vec![1.5e5; 126], vec![2.5e5; 126]]);
+            let mut search = search(&evidence);
+            search.candidates = CATALOGUE.iter().chain(&NUMBERS_OFF).collect();
+            let two = vec![effect("supply_restriction"), effect("exhaust_restriction")];
+            let mut found = vec![Hypothesis {
+                fit: variant(&search, &two, FULL).unwrap(),
+                effects: two,
+                depends_on: Vec::new(),
+            }];
+            search.add_one_for_two(&mut found, &mut |_| ());
+            found.swap_remove(0)
+        };
+        let both = best([0.9, 0.9]);
+        assert_eq!(both.names(), ["number_off (valve.discharge_coefficient)"]);
+        let off = both.fit.values[0] / plant().device.discharge_coefficient;
         assert!((off - 0.9).abs() < 0.01, "{off}");
         // Of two that one law does not do none takes the place.
-        let mut other = plant();
-        other.device.supply_orifice *= 0.9;
-        other.device.exhaust_orifice *= 1.1;
-        let evidence = evidence_of(&other, vec![vec![1.5e5; 126], vec![2.5e5; 126]]);
-        search.evidence = &evidence;
-        let two = vec![effect("supply_restriction"), effect("exhaust_restriction")];
-        let mut found = vec![Hypothesis {
-            fit: variant(&search, &two, FULL).unwrap(),
-            effects: two,
-            depends_on: Vec::new(),
-        }];
-        search.add_one_for_two(&mut found, &mut |_| ());
-        assert_eq!(found[0].effects.len(), 2);
+        assert_eq!(best([0.9, 1.1]).effects.len(), 2);
     }
 
     /// Full fits of laws that were far off took four fifths of a diagnosis that they could not change: a late regulator does nothing of what a large dead volume does. A law that
