@@ -12,6 +12,11 @@ use crate::program::Bench;
 
 /// The first half second of one recording of a laboratory case: too little to know what is missing.
 fn begun(case: &str, limits: &str) -> Bench {
+    begun_with(case, limits, 120)
+}
+
+/// The first lines of one recording.
+fn begun_with(case: &str, limits: &str, lines: usize) -> Bench {
     let bench = Bench::new("paper_step");
     let from = project(&format!("assets/proof/cases/{case}"));
     let rig = std::fs::read_to_string(from.join("rig.toml")).unwrap();
@@ -22,7 +27,7 @@ fn begun(case: &str, limits: &str) -> Bench {
     });
     let rig = kept.collect::<Vec<_>>().join("\n") + "\n" + limits;
     let stairs = std::fs::read_to_string(from.join("stairs.csv")).unwrap();
-    let stairs: Vec<&str> = stairs.lines().take(120).collect();
+    let stairs: Vec<&str> = stairs.lines().take(lines).collect();
     std::fs::create_dir(bench.path("case")).unwrap();
     bench.write("case/rig.toml", rig);
     bench.write("case/stairs.csv", stairs.join("\n") + "\n");
@@ -282,7 +287,7 @@ fn a_diagnosis_goes_on_with_a_recording_more() {
 /// Whatever a rig's program does wrong is one message, and ends with exit code 2.
 #[test]
 fn a_rig_that_does_otherwise_is_refused_with_what_it_did() {
-    let twice = "sed 's/^\\(0\\.[0-9]*\\),\\([0-9]*\\)/\\1,9\\2/' \"$1\" > other.csv; exec \"$IDC\" laboratory --rig case-10 other.csv \"$2\"";
+    let twice = "sed 's/^\\(0\\.[0-9]*\\),\\([0-9]*\\)/\\1,1\\2/' \"$1\" > other.csv; exec \"$IDC\" laboratory --rig case-10 other.csv \"$2\"";
     for (script, patience, expected) in [
         (
             "echo no air >&2; exit 7",
@@ -306,7 +311,7 @@ fn a_rig_that_does_otherwise_is_refused_with_what_it_did() {
         ),
         (twice, "1min", vec!["set_pressure_pa", "asked for"]),
     ] {
-        let bench = begun("case-10", "");
+        let bench = begun_with("case-10", "", 90);
         rig(&bench, script);
         let words = [
             "investigate",

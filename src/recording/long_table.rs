@@ -83,7 +83,7 @@ fn schema(columns: &[(&str, bool)]) -> Arc<Schema> {
 }
 
 /// Columns by name, all of one length, as the tables of this file have them.
-#[cfg(feature = "python")]
+#[cfg(feature = "cli")]
 pub(super) fn batch_of_columns(
     columns: &[(String, LongColumn)],
 ) -> Result<RecordBatch, arrow::error::ArrowError> {

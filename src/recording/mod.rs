@@ -4,7 +4,7 @@
 //! nothing of how it came about. [`parquet`] stores it as a table, [`csv`] reads that of a real rig, [`table`] any other's columns, and [`schema`] lists
 //! the signals that the simulated cell writes. `bag` writes it as messages of ROS 2.
 
-#[cfg(feature = "python")]
+#[cfg(feature = "cli")]
 pub mod arrow_table;
 pub mod atomic;
 #[cfg(feature = "import")]
