@@ -428,6 +428,24 @@ mod tests {
         assert!(found.expected.which < 1e-9, "{}", found.expected.which);
     }
 
+    /// An end stop thirty times as damped took nine tenths of a choice: its sub-steps were not counted.
+    #[test]
+    fn a_stiff_device_is_as_much_more_work() {
+        let stiff = pair(|plant| plant.device.end_stop.damping *= 30.0);
+        let (sensors, limits, coverage) = (sensors(), limits(), Coverage::default());
+        let of = (&stiff[..], &sensors, &limits);
+        let choice = Choice::new(of, &coverage, 0.0, &mut seeded());
+        let device = &plant().device;
+        let stop = &device.end_stop;
+        let swing = (stop.stiffness / device.moving_mass).sqrt();
+        let damped = |times: f64| (times * stop.damping / device.moving_mass).max(swing);
+        let expected = damped(30.0) / damped(1.0);
+        assert!(expected > 10.0, "{expected}");
+        let [usual, own] = [0, 1].map(|place| choice.work[place]);
+        assert_eq!(usual[0], 1.0);
+        assert!((own[0] / expected - 1.0).abs() < 1e-9, "{own:?}");
+    }
+
     #[test]
     fn the_same_seed_chooses_the_same_and_more_programmes_no_worse() {
         let pair = pair(|plant| plant.device.moving_mass *= 1.002);
